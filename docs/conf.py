@@ -66,8 +66,8 @@ def require_the_whole_package(app, error):
     described = app.env.get_domain("py").objects
     missing = [name for name in slipfront.__all__ if f"slipfront.{name}" not in described]
     if missing:
-        told = f"docs/python-api.rst lacks {', '.join(missing)} of slipfront (make module)"
-        logging.getLogger(__name__).error(told)
+        message = f"docs/python-api.rst lacks {', '.join(missing)} of slipfront (make module)"
+        logging.getLogger(__name__).error(message)
         app.statuscode = 1
 
 

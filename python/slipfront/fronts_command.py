@@ -101,7 +101,7 @@ def find(file: Path, options: argparse.Namespace) -> xr.Dataset:
         )
     except ValueError as error:
         raise DataError(f"{file}: {error}") from None
-    own = [note for note in found.attrs["notes"] if "without a time" not in note]  # told by the record
+    own = [note for note in found.attrs["notes"] if "without a time" not in note]  # the record says so
     found.attrs["notes"] = record.attrs["notes"] + own
     return found
 

@@ -20,6 +20,7 @@ from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.given import array, column, instance, number, refusing, shown, whole
 from slipfront.onsets import NONE, without_marks
+from slipfront.read import FRONT_COLUMNS
 from slipfront.units import attributes
 
 # Arrays by their names, such as a Dataset of OpenRun.
@@ -30,20 +31,7 @@ WAITS = 5  # of a tip, in times that a front of the record takes for its least l
 # Student's t for 95 %, in standard errors to each side, of 1, 2, ... degrees of freedom; the last for more.
 STUDENT_T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
-POINT_COLUMNS = (
-    "x_m",
-    "onset_s",
-    "v_tip_m_per_s",
-    "t_s_Pa",
-    "p_s_Pa",
-    "t_d_Pa",
-    "p_d_Pa",
-    "t_r_Pa",
-    "p_r_Pa",
-    "U_s_J_per_m3",
-    "U_r_J_per_m3",
-    "slipping_share",
-)
+POINT_COLUMNS = (*(name for name in FRONT_COLUMNS if name not in ("front_id", "direction")), "slipping_share")
 
 
 @dataclass(frozen=True)

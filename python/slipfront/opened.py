@@ -90,8 +90,8 @@ def text(value: Any) -> str:
 
 def attributes_of(found: h5py.Dataset, name: str) -> dict[str, str]:
     """Those of a data set of the program by their names of the CF conventions."""
-    told = {"units": "unit", "long_name": "description"}
-    stated = {cf: text(found.attrs[own]) for cf, own in told.items() if own in found.attrs}
+    names_in_file = {"units": "unit", "long_name": "description"}
+    stated = {cf: text(found.attrs[own]) for cf, own in names_in_file.items() if own in found.attrs}
     if "long_name" in stated:
         stated["long_name"] = stated["long_name"].partition(", [")[0]  # the dimensions are xarray's
     return attributes(name, **stated)
@@ -276,10 +276,12 @@ class OpenRun:
         require(bool(names), self.folder, "these records have no stress")
         whole = {}
         for name in names:
-            told = records[name].attrs
-            long_name = str(told.get("long_name", "")).removesuffix(CHANGE)
+            attrs = records[name].attrs
+            long_name = str(attrs.get("long_name", "")).removesuffix(CHANGE)
             added = 0.0 if before is None else before[name]
-            whole[name] = (records[name] + added).assign_attrs(told | {"long_name": f"{long_name}, absolute"})
+            whole[name] = (records[name] + added).assign_attrs(
+                attrs | {"long_name": f"{long_name}, absolute"}
+            )
         return xr.Dataset(whole, attrs=records.attrs)
 
     def _attributes(self) -> dict[str, str]:
@@ -298,11 +300,11 @@ class OpenRun:
 
     def _of_motion(self, found: h5py.Dataset, name: str) -> dict[str, str]:
         """Attributes of what counts from the state before the event, where that is not the unloaded one."""
-        told = attributes_of(found, name)
+        attrs = attributes_of(found, name)
         counts = name.startswith(("u_", "displacement", "strain", "stress"))
         if counts and self._place.prestress(self.case) is not None:
-            told["long_name"] += CHANGE
-        return told
+            attrs["long_name"] += CHANGE
+        return attrs
 
     def _stored_snapshots(
         self, file: Path, hdf5: h5py.File, kind: str, name: str, dim: str, shape: tuple[int, ...]

@@ -62,16 +62,9 @@ Body::Body(const BodySource& source, const TimeStepping& time)
                  : steps_of(source,
                             solid::largest_frequency_rad_per_s(source.mesh, source.material, motion_.op),
                             time)),
-      finer_w_(rolling_columns(motion_.op)) {
-  interface_.nodes = source.mesh.interface_nodes;
-  interface_.runs = runs_of(interface_.nodes, motion_);
-  interface_.tributary_m = mesh::tributary_lengths_m(source.mesh);
-  for (const auto n : interface_.nodes) {
-    interface_.mass_kg.push_back(motion_.op.mass_kg[n]);
-    interface_.y_m.push_back(source.mesh.y_m[n]);
-  }
-  interface_.own = source.part != nullptr ? interface_nodes_in(source.part->own)
-                                          : solid::Span{0, static_cast<int>(interface_.nodes.size())};
+      finer_w_(rolling_columns(motion_.op)),
+      interface_(make_interface_side(source.mesh, motion_.op.mass_kg, motion_)) {
+  if (source.part != nullptr) interface_.own = interface_nodes_in(source.part->own);
 }
 
 solid::Span Body::interface_nodes_in(solid::Span columns) const {

@@ -20,25 +20,6 @@ double dot(const solid::Field& a, const solid::Field& b) {
          std::inner_product(a.y.begin(), a.y.end(), b.y.begin(), 0.0);
 }
 
-InterfaceSide make_side(const mesh::Mesh& mesh, const solid::Material& material,
-                        const std::vector<double>& mass_kg) {
-  InterfaceSide side;
-  side.nodes = mesh.interface_nodes;
-  for (std::size_t i = 0; i < side.nodes.size(); ++i) {
-    const auto n = side.nodes[i];
-    if (i > 0 && n == side.nodes[i - 1] + 1)
-      ++side.runs.back().count;
-    else
-      side.runs.push_back({i, n, 1, true});
-    side.mass_kg.push_back(mass_kg[n]);
-    side.y_m.push_back(mesh.y_m[n]);
-  }
-  side.own = {0, static_cast<int>(side.nodes.size())};
-  side.tributary_m = mesh::tributary_lengths_m(mesh);
-  side.landing = Landing(mesh, material, side.nodes);
-  return side;
-}
-
 /// @param substep_s, substeps  the last level's step, and how many make a step of the coarsest one
 PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const int> multiples,
                     double substep_s, int substeps) {
@@ -55,7 +36,8 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.damping_s = material.stiffness_damping_s;
   body.is_in_contact = mesh::marked(mesh, mesh.interface_nodes);
   body.is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
-  body.side = make_side(mesh, material, body.mass_kg);
+  body.side = make_interface_side(mesh, body.mass_kg, BodyMotion{});
+  body.side.landing = Landing(mesh, material, body.side.nodes);
   const auto levels = cell_levels(mesh, time, multiples);
   for (std::size_t l = 0; l < levels.periods.size(); ++l) {
     PlainLevel level;
@@ -100,12 +82,6 @@ std::vector<PlainBody> make_bodies(std::span<const BodySource> sources, const Ti
   return bodies;
 }
 
-std::vector<ContactBody> contacts_of(std::vector<PlainBody>& bodies) {
-  std::vector<ContactBody> contacts;
-  for (auto& body : bodies) contacts.push_back({&body.side, &body.u_m, &body.v_m_per_s});
-  return contacts;
-}
-
 }  // namespace
 
 solid::Field stiffness_product(const PlainBody& body, const PlainLevel& level, const solid::Field& w) {
@@ -123,12 +99,21 @@ solid::Field stiffness_product(const PlainBody& body, const PlainLevel& level, c
   return product;
 }
 
-solid::Field velocities_seen(const PlainBody& body, const PlainLevel& level) {
-  auto v = body.v_m_per_s;
+namespace {
+
+/// Sets a level's shared nodes to their mean velocity since its last kick.
+void set_mean_velocities(const PlainBody& body, const PlainLevel& level, solid::Field& v) {
   for (const auto component : components)
     for (std::size_t n = 0; n < v.size(); ++n)
       if (level.is_shared[n])
         (v.*component)[n] = ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
+}
+
+}  // namespace
+
+solid::Field velocities_seen(const PlainBody& body, const PlainLevel& level) {
+  auto v = body.v_m_per_s;
+  set_mean_velocities(body, level, v);
   return v;
 }
 
@@ -264,23 +249,11 @@ double PlainStepper::node_updates_per_step() const {
 }
 
 std::vector<double> PlainStepper::probed_u_m() const {
-  std::vector<double> values;
-  for (const auto& probe : probes_)
-    for (const auto n : probe.node) {
-      const auto& u_m = bodies_[probe.body].u_m;
-      values.insert(values.end(), {u_m.x[n], u_m.y[n]});
-    }
-  return values;
+  return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].u_m; });
 }
 
 std::vector<double> PlainStepper::probed_v_m_per_s() const {
-  std::vector<double> values;
-  for (const auto& probe : probes_)
-    for (const auto n : probe.node) {
-      const auto& v = bodies_[probe.body].v_m_per_s;
-      values.insert(values.end(), {v.x[n], v.y[n]});
-    }
-  return values;
+  return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].v_m_per_s; });
 }
 
 std::size_t PlainStepper::snapshot_chunk_bytes() const {
@@ -293,15 +266,12 @@ std::vector<double> PlainStepper::snapshot_chunk(int /*k*/) const {
     for (const auto component : components)
       for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const auto& body = bodies_[b];
-        auto values = (is_velocity ? body.v_m_per_s : body.u_m).*component;
-        // Of shared nodes the mean over the level's step, as its cells see them.
+        auto field = is_velocity ? body.v_m_per_s : body.u_m;
         for (const auto& level : body.levels)
-          for (std::size_t n = 0; is_velocity && n < values.size(); ++n)
-            if (level.is_shared[n])
-              values[n] = ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
+          if (is_velocity) set_mean_velocities(body, level, field);
         // Bodies below are described upside down.
         const double sign = b > 0 && component == &solid::Field::y ? -1 : 1;
-        for (const double value : values) all.push_back(sign * value);
+        for (const double value : field.*component) all.push_back(sign * value);
       }
   return all;
 }

@@ -70,6 +70,18 @@ inline std::size_t displacement_values(std::span<const Probe> probes) {
   return 8 * probes.size();
 }
 
+/// x and y of a field at the probes' nodes, in the order of displacement_values.
+/// @param field_of  gives the field of a body by its number
+template <class FieldOf>
+std::vector<double> values_at(std::span<const Probe> probes, FieldOf&& field_of) {
+  std::vector<double> values;
+  for (const auto& probe : probes) {
+    const solid::Field& field = field_of(probe.body);
+    for (const auto n : probe.node) values.insert(values.end(), {field.x[n], field.y[n]});
+  }
+  return values;
+}
+
 /// Makes rows of a record of the displacements of the probes' nodes at successive steps. A row needs those of
 /// its step and of the ones before and after: its velocity is the central difference, which belongs to the
 /// row's time and, as the displacement, to the same time at all nodes, however often they move in a step.

@@ -53,6 +53,8 @@ struct PlainBody {
   std::vector<PlainLevel> levels;  ///< coarsest first
   std::vector<Dashpot> dashpots;   ///< of absorbing nodes not in contact, with d = 0 for all others
   InterfaceSide side;
+  /// What the contact moves.
+  ContactBody contact() { return {&side, &u_m, &v_m_per_s}; }
 
   solid::Field u_m, v_m_per_s;
   solid::Field load_m_per_s2, impulse_m_per_s;  ///< of coarser levels, on shared nodes

@@ -58,12 +58,6 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
   return lowest_s;
 }
 
-std::vector<ContactBody> contacts_of(std::vector<Body>& bodies) {
-  std::vector<ContactBody> contacts;
-  for (auto& body : bodies) contacts.push_back(body.contact());
-  return contacts;
-}
-
 }  // namespace
 
 int step_ratio(double stable_step_s, double min_s) {
@@ -177,23 +171,11 @@ void Stepper::store_probed(std::int64_t step, std::size_t band, const StepCallba
 }
 
 std::vector<double> Stepper::probed_u_m() const {
-  std::vector<double> values;
-  for (const auto& probe : probes_)
-    for (const auto n : probe.node) {
-      const auto& u_m = bodies_[probe.body].u_m();
-      values.insert(values.end(), {u_m.x[n], u_m.y[n]});
-    }
-  return values;
+  return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].u_m(); });
 }
 
 std::vector<double> Stepper::probed_v_m_per_s() const {
-  std::vector<double> values;
-  for (const auto& probe : probes_)
-    for (const auto n : probe.node) {
-      const auto& v = bodies_[probe.body].v_m_per_s();
-      values.insert(values.end(), {v.x[n], v.y[n]});
-    }
-  return values;
+  return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].v_m_per_s(); });
 }
 
 std::int64_t Stepper::advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) {

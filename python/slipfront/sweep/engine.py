@@ -82,7 +82,8 @@ def client_of(scheduler: str | None, workers: int) -> Iterator[Any]:
                 client.run(ignore_interrupts)
             else:
                 client = stack.enter_context(Client(scheduler, timeout=ANSWER_S))
-                logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what is told is told here
+                # The message is ours.
+                logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         except (OSError, TimeoutError, ValueError) as error:
             where = scheduler or "local workers"
             raise DataError(f"{where}: no Dask scheduler answers: {error}") from None
