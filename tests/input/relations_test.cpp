@@ -16,7 +16,7 @@ namespace {
 
 /// A case whose keys do not fit together. The line to be named ends with "# here"; where none does, it is the
 /// last override.
-struct Wrong {
+struct Contradiction {
   const char* name;
   std::string text;
   std::vector<Override> overrides = {};
@@ -29,7 +29,7 @@ const std::string on_steel =
     "density_kg_per_m3 = 7800\nstiffness_damping_s = 1e-7\n";
 const std::string square = "[plate]\ncorner = \"none\"\n";
 
-const Wrong wrong_cases[] = {
+const Contradiction wrong_cases[] = {
     // Friction
     {"Weakening", "[friction]\nmu_s = 0.5 # here\nmu_k = 0.6\n"},
     {"WeakeningFromTheDefault", "[friction]\nalpha_m2_per_s2 = 0.2\nmu_k = 1.4 # here\n"},
@@ -108,7 +108,7 @@ const Wrong wrong_cases[] = {
     {"MagnitudeInAList", "[output]\nsnapshot_times_s = [1e-300] # here\n"},
 };
 
-std::string place_in(const Wrong& wrong) {
+std::string place_in(const Contradiction& wrong) {
   const auto mark = wrong.text.find("# here");
   if (mark != std::string::npos)
     return fmt::format("c.toml:{}", 1 + std::count(wrong.text.begin(), wrong.text.begin() + mark, '\n'));

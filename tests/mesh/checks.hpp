@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mesh/mesh.hpp"
 
 namespace slipfront::mesh {
+
+inline constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// Sum of the cells' areas, m2.
 double area_m2(const Mesh& mesh);

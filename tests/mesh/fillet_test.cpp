@@ -17,7 +17,6 @@ namespace slipfront::mesh {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// Radius in mm; elements along the plate's height of 40 mm.
 class Fillet : public ::testing::TestWithParam<std::tuple<int, int>> {

@@ -19,7 +19,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// 40 x 30 columns and rows of 1 mm; coarsened once or twice above 6 mm.
 Plate graded(Corner corner, int coarsenings) {

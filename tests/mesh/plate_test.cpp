@@ -21,7 +21,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 Plate small_plate(Corner corner) {
   return test::plate_of(0.04, 0.02, 0.02 / 30, corner);

@@ -22,9 +22,8 @@ using mesh::Top;
 using support::algorithms;
 using support::Balance;
 using support::gentle_law;
+using support::mu_s;
 using support::with_algorithm;
-
-constexpr double mu_s = 1.3;
 
 /// Corner, rows and sub-steps of the interface layer.
 class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {

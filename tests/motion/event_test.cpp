@@ -16,11 +16,10 @@ namespace slipfront::motion {
 namespace {
 
 using mesh::Corner;
+using support::mu_s;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double mu_s = 1.3;
 
 bool always(std::int64_t, std::int64_t) {
   return true;

@@ -19,8 +19,7 @@ namespace {
 
 using mesh::Corner;
 using support::max_difference;
-
-constexpr double mu_s = 1.3;
+using support::mu_s;
 
 /// 24 mm x 24 mm in elements of 1, 2 and 4 mm: rows 4, 3 and 2 of them.
 mesh::Plate graded_plate(Corner corner, int coarsenings = 2) {

@@ -15,8 +15,6 @@ namespace {
 using namespace support;
 using mesh::Corner;
 
-constexpr double mu_s = 1.3;
-
 void expect_near(std::span<const double> a, std::span<const double> b, double rounding, const char* what) {
   ASSERT_EQ(a.size(), b.size()) << what;
   double largest = 0, worst = 0;

@@ -12,10 +12,10 @@
 namespace slipfront::motion {
 namespace {
 
-constexpr double mu_s = 0.5;
+constexpr double static_mu = 0.5;
 constexpr std::size_t n_nodes = 5;
 
-/// Nodes 1 mm apart under p = 4 Pa, each at t/p = 0.25, half of mu_s.
+/// Nodes 1 mm apart under p = 4 Pa, each at t/p = 0.25, half of static_mu.
 statics::Equilibrium at_rest(std::size_t n = n_nodes, statics::Contact contact = statics::Contact::stick) {
   statics::Equilibrium e;
   for (std::size_t k = 0; k < n; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
@@ -30,7 +30,7 @@ interface::Interface unchanged() {
   s.t_Pa.assign(n_nodes, 1.0);
   s.p_Pa.assign(n_nodes, 4.0);
   s.trial_traction_Pa.assign(n_nodes, 1.0);
-  s.strength_Pa.assign(n_nodes, mu_s * 4.0);
+  s.strength_Pa.assign(n_nodes, static_mu * 4.0);
   return s;
 }
 
@@ -38,17 +38,17 @@ void set(interface::Interface& s, std::size_t node, double trial, double t, doub
   s.trial_traction_Pa[node] = trial;
   s.t_Pa[node] = t;
   s.p_Pa[node] = p;
-  s.strength_Pa[node] = mu_s * p;
+  s.strength_Pa[node] = static_mu * p;
   s.slipping[node] = slips;
 }
 
 TEST(Recorder, LocatesTheOnsetInsideTheStep) {
-  Recorder recorder(at_rest(), mu_s, 1);
+  Recorder recorder(at_rest(), static_mu, 1);
   recorder.observe(0, unchanged(), false);
   recorder.observe(1, unchanged(), false);
   auto s = unchanged();
-  // |t| / (mu_s p) goes from 0.5 to 2.5: through 1 after a quarter of the step from 1 s to 3 s.
-  set(s, 2, 2.5 * mu_s * 8, 0.3 * 8, 8, true);
+  // |t| / (static_mu p) goes from 0.5 to 2.5: through 1 after a quarter of the step from 1 s to 3 s.
+  set(s, 2, 2.5 * static_mu * 8, 0.3 * 8, 8, true);
   set(s, 1, 3, 3, 12, false);
   set(s, 3, 1.8, 1.8, 3.6, false);
   recorder.observe(3, s, true);
@@ -58,20 +58,20 @@ TEST(Recorder, LocatesTheOnsetInsideTheStep) {
   EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1.5);
   EXPECT_EQ(record.end_time_s, 4);
   EXPECT_EQ(record.x_m, at_rest().tractions.x_m);
-  // Tractions interpolated to that time; at the node itself the strength mu_s p, not the weakened traction.
+  // Tractions interpolated to that time; at the node itself the strength static_mu p, not the weakened traction.
   EXPECT_EQ(record.halo, 1);
   const auto around = record.around_onset(0);
   ASSERT_EQ(around.size(), 3);
   EXPECT_DOUBLE_EQ(around[0].t_Pa, 1.5);
   EXPECT_DOUBLE_EQ(around[0].p_Pa, 6);
-  EXPECT_DOUBLE_EQ(around[1].t_Pa, mu_s * 5);
+  EXPECT_DOUBLE_EQ(around[1].t_Pa, static_mu * 5);
   EXPECT_DOUBLE_EQ(around[1].p_Pa, 5);
   EXPECT_DOUBLE_EQ(around[2].t_Pa, 1.2);
   EXPECT_DOUBLE_EQ(around[2].p_Pa, 3.9);
 }
 
 TEST(Recorder, HasNoTractionsBeyondTheEnds) {
-  Recorder recorder(at_rest(), mu_s, 2);
+  Recorder recorder(at_rest(), static_mu, 2);
   recorder.observe(0, unchanged(), false);
   auto s = unchanged();
   set(s, 1, 4, 2, 4, true);
@@ -92,15 +92,15 @@ TEST(Recorder, HasNoTractionsBeyondTheEnds) {
     EXPECT_EQ(std::isnan(near_start[k].t_Pa), k < 1) << k;
   }
   // The halo went with its onset when they were put in order: both nodes slip at 2 of 4 Pa.
-  EXPECT_DOUBLE_EQ(at_end[2].t_Pa, mu_s * 4);
-  EXPECT_DOUBLE_EQ(near_start[2].t_Pa, mu_s * 4);
+  EXPECT_DOUBLE_EQ(at_end[2].t_Pa, static_mu * 4);
+  EXPECT_DOUBLE_EQ(near_start[2].t_Pa, static_mu * 4);
   EXPECT_DOUBLE_EQ(at_end[1].t_Pa, 1);
 }
 
 /// Node 2 between two observations 2 s apart.
 record::SlipRecord record_of(const statics::Equilibrium& before, const interface::Interface& first,
                              const interface::Interface& second) {
-  Recorder recorder(before, mu_s, 0);
+  Recorder recorder(before, static_mu, 0);
   recorder.observe(0, first, false);
   recorder.observe(2, second, true);
   const auto record = recorder.record_until(2);
@@ -111,7 +111,7 @@ record::SlipRecord record_of(const statics::Equilibrium& before, const interface
 TEST(Recorder, KeepsTheSignOfTheTraction) {
   auto s = unchanged();
   set(s, 2, 6, -2, 4, true);
-  EXPECT_DOUBLE_EQ(record_of(at_rest(), unchanged(), s).around_onset(0)[0].t_Pa, -mu_s * 4);
+  EXPECT_DOUBLE_EQ(record_of(at_rest(), unchanged(), s).around_onset(0)[0].t_Pa, -static_mu * 4);
 }
 
 TEST(Recorder, ANodeThatWasNotPressedBeginsNow) {
@@ -125,7 +125,7 @@ TEST(Recorder, ANodeThatWasNotPressedBeginsNow) {
 }
 
 TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
-  // A strength that is not mu_s p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
+  // A strength that is not static_mu p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
   // trial traction rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.
   auto first = unchanged(), second = unchanged();
   first.t_Pa[2] = 1.6;
@@ -138,7 +138,7 @@ TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
 }
 
 TEST(Recorder, SlipInTheFirstUpdateBeginsAtTimeZero) {
-  Recorder recorder(at_rest(), mu_s, 0);
+  Recorder recorder(at_rest(), static_mu, 0);
   auto s = unchanged();
   set(s, 0, 6, 2, 4, true);
   recorder.observe(0, s, true);
@@ -150,7 +150,7 @@ TEST(Recorder, SlipInTheFirstUpdateBeginsAtTimeZero) {
 TEST(Recorder, InitiallySlippingNodesHaveNoOnsetUntilTheySlipAnew) {
   auto before = at_rest();
   before.contact[2] = statics::Contact::slip;
-  Recorder recorder(before, mu_s, 0);
+  Recorder recorder(before, static_mu, 0);
   EXPECT_EQ(recorder.n_slipping(), 1);
   auto s = unchanged();
   set(s, 2, 2, 2, 4, true);
@@ -174,7 +174,7 @@ TEST(Recorder, SeesTheMotionOfAnyNodeThatSlipsFasterThanCreep) {
   // More nodes than the vectors of the search hold, and a rest.
   constexpr std::size_t n = 19;
   for (std::size_t node = 0; node < n; ++node) {
-    Recorder recorder(at_rest(n, statics::Contact::slip), mu_s, 0, 0.01);
+    Recorder recorder(at_rest(n, statics::Contact::slip), static_mu, 0, 0.01);
     EXPECT_EQ(recorder.last_motion_s(), 0);
     interface::Interface s(n);
     const double sign = node % 2 == 0 ? -1 : 1;
@@ -309,13 +309,13 @@ struct RandomSlip {
 
 TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
   fronts::FrontOptions options;
-  options.mu_s = mu_s;
+  options.mu_s = static_mu;
   options.elasticity = {1e9, 0.3, false};
   options.l_star_m = 1e-3;
   options.arrest_time_s = 20;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     RandomSlip slip(seed);
-    Recorder recorder(slip.before, mu_s, 2);
+    Recorder recorder(slip.before, static_mu, 2);
     EveryChange every(slip.before, 2);
     for (int step = 0; step < 2000; ++step) {
       slip.advance(step);
@@ -366,7 +366,7 @@ class NumberList {
 TEST(Recorder, GoesOnFromWhatItHasWritten) {
   for (const int stop : {0, 100}) {
     RandomSlip slip(7);
-    Recorder whole(slip.before, mu_s, 2), second(slip.before, mu_s, 2);
+    Recorder whole(slip.before, static_mu, 2), second(slip.before, static_mu, 2);
     for (int step = 0; step < 600; ++step) {
       if (step == stop) {
         std::vector<double> numbers;

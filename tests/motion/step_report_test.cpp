@@ -10,7 +10,7 @@ namespace slipfront::motion {
 namespace {
 
 constexpr std::size_t n_around = 3;
-constexpr int n_steps = 4, substeps = 2, sampled_rows = 2;
+constexpr int n_reported = 4, substeps = 2, sampled_rows = 2;
 
 /// Of nodes [first, first + n): each value tells where it belongs.
 StepReport of_nodes(int first, int n, int n_probes) {
@@ -22,9 +22,9 @@ StepReport of_nodes(int first, int n, int n_probes) {
     report.memory.strength_Pa.push_back(200 + node);
     report.memory.slipping.push_back(static_cast<std::uint8_t>(node % 2));
   }
-  for (int step = 0; step < n_steps; ++step)
+  for (int step = 0; step < n_reported; ++step)
     report.rates.push_back({first != 5 || step != 2, static_cast<double>(first * (step % 2)), 0.5 * first});
-  for (int update = 0; update < n_steps * substeps; ++update) {
+  for (int update = 0; update < n_reported * substeps; ++update) {
     SlipUpdate seen;
     seen.time_s = update;
     seen.moves = update == first;
@@ -41,7 +41,7 @@ StepReport of_nodes(int first, int n, int n_probes) {
     for (int row = 0; row < sampled_rows; ++row)
       for (int node = first; node < first + n; ++node)
         report.samples[f].push_back(1e4 * static_cast<double>(f) + 100 * row + node);
-  for (int step = 0; step < n_steps; ++step)
+  for (int step = 0; step < n_reported; ++step)
     for (int k = 0; k < 8 * n_probes; ++k) report.displacements.push_back(1000 * first + 100 * step + k);
   return report;
 }
@@ -77,7 +77,7 @@ std::vector<double> numbers_of(const StepReport& report) {
 TEST(StepReport, OfPartsAreThoseOfAllNodes) {
   const std::vector<StepReport> parts = {of_nodes(0, 5, 0), of_nodes(5, 1, 0), of_nodes(6, 7, 0)};
   auto all = of_nodes(0, 13, 0);
-  for (int k = 0; k < n_steps; ++k) all.rates[static_cast<std::size_t>(k)] = {k != 2, 6.0 * (k % 2), 3};
+  for (int k = 0; k < n_reported; ++k) all.rates[static_cast<std::size_t>(k)] = {k != 2, 6.0 * (k % 2), 3};
   all.seen.moves = {1, 0, 0, 0, 0, 1, 1, 0};
   EXPECT_EQ(numbers_of(StepReport::joined(parts)), numbers_of(all));
 }
@@ -90,7 +90,7 @@ TEST(StepReport, AreTheSameJoinedInAnyGroups) {
                                           StepReport::joined(std::span(parts).subspan(2))};
   EXPECT_EQ(numbers_of(StepReport::joined(groups)), numbers_of(all));
   // Probes of all parts in each step.
-  ASSERT_EQ(all.displacements.size(), n_steps * 32U);
+  ASSERT_EQ(all.displacements.size(), n_reported * 32U);
   EXPECT_EQ(all.displacements[32 * 3 + 0], 300);
   EXPECT_EQ(all.displacements[32 * 3 + 8], 6300);
   EXPECT_EQ(all.displacements[32 * 3 + 23], 6315);

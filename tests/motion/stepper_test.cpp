@@ -20,12 +20,11 @@ using support::gentle_law;
 using support::in_flight;
 using support::max_abs;
 using support::max_difference;
+using support::mu_s;
 using support::one_substep;
 using support::paper_law;
 using support::tiny_plate;
 using support::touches;
-
-constexpr double mu_s = 1.3;
 
 const solid::Material undamped{.stiffness_damping_s = 0};
 

@@ -14,6 +14,8 @@ namespace slipfront::motion::support {
 
 using namespace slipfront::test;
 
+inline constexpr double mu_s = 1.3;  ///< of the laws below
+
 inline record::StaticState uniform_tractions(const mesh::Mesh& mesh, double t_Pa, double p_Pa) {
   record::StaticState tractions;
   for (const auto node : mesh.interface_nodes) tractions.x_m.push_back(mesh.x_m[node]);

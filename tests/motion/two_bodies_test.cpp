@@ -18,7 +18,9 @@
 namespace slipfront::motion {
 namespace {
 
-constexpr double p0_Pa = 1e6, mu_s = 1.3;
+using support::mu_s;
+
+constexpr double p0_Pa = 1e6;
 const solid::Material pmma{};
 /// Slower by a factor of 2.3, lighter, hardly damped.
 const solid::Material gel{.youngs_modulus_Pa = 0.3e9,

@@ -19,17 +19,17 @@ namespace {
 
 using interface::Relaxed;
 
-solid::Material undamped(double youngs_modulus_Pa, double poissons_ratio, double density_kg_per_m3) {
+solid::Material undamped_with(double youngs_modulus_Pa, double poissons_ratio, double density_kg_per_m3) {
   return {.youngs_modulus_Pa = youngs_modulus_Pa,
           .poissons_ratio = poissons_ratio,
           .density_kg_per_m3 = density_kg_per_m3,
           .stiffness_damping_s = 0};
 }
 
-const auto pmma = undamped(2.6e9, 0.37, 1200);
-const auto stiffer = undamped(5.0e9, 0.33, 1500);
-const auto steel = undamped(210e9, 0.3, 7800);
-const auto aluminium = undamped(70e9, 0.33, 2700);
+const auto pmma = undamped_with(2.6e9, 0.37, 1200);
+const auto stiffer = undamped_with(5.0e9, 0.33, 1500);
+const auto steel = undamped_with(210e9, 0.3, 7800);
+const auto aluminium = undamped_with(70e9, 0.33, 2700);
 
 /// Slope of mu for which weakening is m times the pair's radiation damping at a pressure of 1 MPa.
 Sliding weakening(const Bodies& bodies, double mu, double m) {

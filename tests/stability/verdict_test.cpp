@@ -20,25 +20,25 @@ using testing::StartsWith;
 constexpr double h = 0.667e-3;
 constexpr double width = 0.2;
 
-const solid::Material undamped{.stiffness_damping_s = 0};
+const solid::Material elastic{.stiffness_damping_s = 0};
 
 TEST(WellPosedness, CoulombOnARigidPlane) {
-  const auto low = well_posedness(undamped, Coulomb{0.9}, 5e6, h, width);
+  const auto low = well_posedness(elastic, Coulomb{0.9}, 5e6, h, width);
   EXPECT_FALSE(low.unbounded);
   EXPECT_EQ(low.growth_at_grid_per_s, 0);
   EXPECT_THAT(low.statement, StartsWith("well-posed"));
-  const auto high = well_posedness(undamped, Coulomb{1.3}, 5e6, h, width);
+  const auto high = well_posedness(elastic, Coulomb{1.3}, 5e6, h, width);
   EXPECT_TRUE(high.unbounded);
   EXPECT_THAT(high.statement, StartsWith("ill-posed"));
   // 0.106 k c_S, to the three decimals of the reference.
-  const double k_c_S = std::numbers::pi / h * solid::shear_speed_m_per_s(undamped);
+  const double k_c_S = std::numbers::pi / h * solid::shear_speed_m_per_s(elastic);
   EXPECT_NEAR(high.growth_at_grid_per_s / k_c_S, 0.106, 5e-4);
   EXPECT_EQ(high.weakening_over_radiation, 0);
 }
 
 TEST(WellPosedness, VelocityWeakeningAgainstRadiation) {
   // mu'(0) = -(mu_s - mu_k)^1.5/sqrt(alpha), G/c_S = sqrt(rho G).
-  const auto& m = undamped;
+  const auto& m = elastic;
   const auto w = well_posedness(m, VelocityWeakening{.mu_s = 0.9, .mu_k = 0.5}, 5e6, h, width);
   const double expected =
       std::pow(0.4, 1.5) / std::sqrt(0.1) * 5e6 / std::sqrt(m.density_kg_per_m3 * solid::shear_modulus_Pa(m));
