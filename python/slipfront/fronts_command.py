@@ -56,24 +56,25 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-def longitudinal_speed_m_per_s(options: argparse.Namespace) -> float | None:
-    """None where neither the speed nor a material is given."""
+def wave_speeds_of(options: argparse.Namespace) -> dict[str, float]:
+    """By their names; empty where neither the speed nor a material is given."""
     given = {name: getattr(options, name) for name in MATERIAL if getattr(options, name) is not None}
     if options.c_l_m_per_s is not None:
         if given:
             raise DataError("--c-l-m-per-s and a material are given; give one of them")
         if not 0 < options.c_l_m_per_s < np.inf:
             raise DataError(f"--c-l-m-per-s is {options.c_l_m_per_s}; it must be above 0 and finite")
-        return float(options.c_l_m_per_s)
+        return {"c_L": float(options.c_l_m_per_s)}
     if not given:
-        return None
+        return {}
     missing = [f"--{name.lower().replace('_', '-')}" for name in MATERIAL if name not in given]
     if missing:
         raise DataError(f"a material needs {', '.join(missing)} as well")
     try:
-        return wave_speeds(**given, plane=options.plane).c_L_m_per_s
+        found = wave_speeds(**given, plane=options.plane)
     except ValueError as error:
         raise DataError(str(error)) from None
+    return {name: getattr(found, f"{name}_m_per_s") for name in ("c_L", "c_S", "c_R")}
 
 
 def mark(text: str) -> float | str:
@@ -133,24 +134,25 @@ def in_words(text: str) -> str:
     return re.sub("|".join(OPTIONS), lambda found: f"--{found[0].replace('_', '-')}", text)
 
 
-def speed_in_words(speed_and_interval: np.ndarray, c_L_m_per_s: float | None) -> str:
+def speed_in_words(speed_and_interval: np.ndarray, of_waves: dict[str, float]) -> str:
     speed, low, high = speed_and_interval
     if not np.isfinite(speed):
         return "speed undefined"
-    share = f" ({speed / c_L_m_per_s:.2f} c_L)" if c_L_m_per_s is not None else ""
+    shares = ", ".join(f"{speed / of_wave:.2f} {name}" for name, of_wave in of_waves.items())
+    share = f" ({shares})" if shares else ""
     above = f" to {high:.4g}" if np.isfinite(high) else " or more"
     interval = f", {low:.4g}{above}" if f"{low:.4g}" != f"{high:.4g}" else ""
     return f"speed {speed:.4g} m/s{interval}{share}"
 
 
-def summary(fronts: xr.Dataset, c_L_m_per_s: float | None) -> list[str]:
+def summary(fronts: xr.Dataset, of_waves: dict[str, float]) -> list[str]:
     """A line for each front, as `slipfront run` prints them; the kind of slip needs a history."""
     x, onset = fronts["x_m"].to_numpy(), fronts["onset_s"].to_numpy()
     speeds = np.array([fronts[name].to_numpy() for name in SPEEDS]).T
     ends = fronts["end"].to_numpy()
     lines = [
         f"front {k}: x = {x[part.start]:.4f} to {x[part.stop - 1]:.4f} m, {1e6 * onset[part.start]:.1f} to "
-        f"{1e6 * onset[part.stop - 1]:.1f} us, {speed_in_words(speed, c_L_m_per_s)}, ends: {end}"
+        f"{1e6 * onset[part.stop - 1]:.1f} us, {speed_in_words(speed, of_waves)}, ends: {end}"
         for k, (part, speed, end) in enumerate(zip(slices_of(fronts), speeds, ends, strict=True))
     ]
     used = fronts.attrs
@@ -166,11 +168,11 @@ def main(arguments: list[str]) -> int:
     options = parse(arguments)
 
     def work() -> list[str]:
-        c_L_m_per_s = longitudinal_speed_m_per_s(options)
+        of_waves = wave_speeds_of(options)
         fronts = find(options.onsets, options)
         if options.output is not None:
-            write(options.output, rows(fronts, c_L_m_per_s))
-        return summary(fronts, c_L_m_per_s)
+            write(options.output, rows(fronts, of_waves.get("c_L")))
+        return summary(fronts, of_waves)
 
     return command.run("slipfront fronts", work)
 

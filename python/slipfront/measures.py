@@ -27,6 +27,7 @@ from slipfront.units import attributes
 Arrays = Mapping[Any, Any]
 NAN = float("nan")
 LENGTHS_AND_TIMES = ("l_star_m", "arrest_time_s", "min_length_m")  # of FrontSettings
+DIGITS = 7  # of times at most, behind which rounding begins
 WAITS = 5  # of a tip, in times that a front of the record takes for its least length
 # Student's t for 95 %, in standard errors to each side, of 1, 2, ... degrees of freedom; the last for more.
 STUDENT_T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
@@ -131,15 +132,26 @@ def settings_of_record(x_m: np.ndarray, onset_s: np.ndarray, given: FrontSetting
     return replace(given, **{name: value for name, value in own.items() if getattr(given, name) is None})
 
 
-def time_step_s(onset_s: np.ndarray) -> float:
-    """Smallest step between the times of which all are multiples, such as a camera's; 0 where none is."""
-    steps = np.diff(np.unique(onset_s[np.isfinite(onset_s)]))
-    steps = steps[steps > 1e-3 * steps.max(initial=0.0)]
-    if steps.size == 0:
+def time_step_s(x_m: np.ndarray, onset_s: np.ndarray) -> float:
+    """The largest step of which all differences of times are multiples, such as a camera's; 0 where none is.
+
+    Times of a front that is exactly uniform are multiples of its travel time between two places, which is no
+    step of a clock: then the last digit that they have."""
+    slipped = np.isfinite(onset_s)
+    t = onset_s[slipped]
+    differences = np.diff(np.unique(t))
+    if differences.size == 0:
         return 0.0
-    least = float(steps.min())
-    parts = steps / least
-    return least if np.all(np.abs(parts - np.round(parts)) < 0.01) else 0.0
+    digits = int(np.floor(np.log10(differences.max()))) - np.arange(DIGITS)
+    for digit in 10.0**digits:
+        parts = differences / digit
+        if np.all(np.abs(parts - np.round(parts)) < 0.01):
+            break
+    else:
+        return 0.0
+    slowness = np.abs(np.diff(t) / np.diff(x_m[slipped]))
+    is_uniform = slowness.size > 2 and np.ptp(slowness) < 1e-6 * slowness.max()
+    return float(digit if is_uniform else digit * np.gcd.reduce(np.round(parts).astype(np.int64)))
 
 
 def fitted_speed(run_m: np.ndarray, onset_s: np.ndarray, step_s: float) -> tuple[float, float, float]:
@@ -223,8 +235,8 @@ def find_fronts(
     find_fronts_in_history.
     end_time_s: end of the record, by default the last onset. A front that might go on is then "record_end".
     resolution_s: time between two looks at the interface, such as a camera's; v_tip_m_per_s from onsets
-    that are less apart are undefined. Without it that of the fronts' speeds is the smallest step of the
-    times, where all are multiples of it.
+    that are less apart are undefined. Without it that of the fronts' speeds is the largest step of which
+    all times are multiples; of an exactly uniform front the last digit of its times.
     never_slipped: the number in onset_s that marks a place that never slips; "none" if every number is a
     time. Without it -1 is such a mark where all others are at least 0, and so are 999, 1e9 and the like
     farther from the others than these are from each other; a UserWarning says so.
@@ -259,7 +271,7 @@ def find_fronts(
         found = as_dataset(_core.find_fronts(x, onset, t_s, p_s, end, resolution, options))
     if p_s_Pa is None:
         found["p_s_Pa"][:] = np.nan
-    step = time_step_s(onset) if resolution_s is None else resolution
+    step = time_step_s(x, onset) if resolution_s is None else resolution
     add_speeds(found, step)
     found.attrs = {name: getattr(used, name) for name in LENGTHS_AND_TIMES}
     found.attrs |= {"time_step_s": step, "notes": [*notes, *notes_of_record(onset, found, used)]}

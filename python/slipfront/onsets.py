@@ -171,6 +171,8 @@ def read_onsets(file: str | Path, *, never_slipped: float | str | None = None) -
     read = {quantity: numbers(name, quantity == "onset_s") for quantity, (name, _) in chosen.items()}
     lengths = {len(values) for values in read.values()}
     require(len(lengths) == 1, file, "its columns differ in length")
+    if np.all(np.diff(read["x_m"]) < 0):
+        read = {quantity: values[::-1] for quantity, values in read.items()}
     require_ascending(file, chosen["x_m"][0], read["x_m"])
     require(len(read["x_m"]) >= 2, file, "fewer than two rows")
     unit = name_and_unit(chosen["onset_s"][0])[1]

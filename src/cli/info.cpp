@@ -35,18 +35,20 @@ void add_wave_speeds(const run::Info& info, Listing& list) {
   list.add("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
   list.add("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
   list.add("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
-  if (info.base_speeds)
-    list.add("base: c_L, c_S, c_R", fmt::format("{:.1f}, {:.1f}, {:.1f} m/s", info.base_speeds->c_L,
-                                                info.base_speeds->c_S, info.base_speeds->c_R));
-  if (info.base_speeds)
-    list.add("generalised Rayleigh speed",
-             info.generalised_rayleigh_speed_m_per_s
-                 ? fmt::format("{:.1f} m/s", *info.generalised_rayleigh_speed_m_per_s)
-                 : "none: the two bodies differ too much");
+  const auto is_same = [&](const run::WaveSpeeds& s) {
+    return s.c_L == info.speeds.c_L && s.c_S == info.speeds.c_S && s.c_R == info.speeds.c_R;
+  };
+  if (!info.base_speeds || is_same(*info.base_speeds)) return;
+  list.add("base: c_L, c_S, c_R", fmt::format("{:.1f}, {:.1f}, {:.1f} m/s", info.base_speeds->c_L,
+                                              info.base_speeds->c_S, info.base_speeds->c_R));
+  list.add("generalised Rayleigh speed",
+           info.generalised_rayleigh_speed_m_per_s
+               ? fmt::format("{:.1f} m/s", *info.generalised_rayleigh_speed_m_per_s)
+               : "none: the two bodies differ too much");
 }
 
 void add_size(const run::Info& info, Listing& list) {
-  const auto irregular = info.n_irregular ? fmt::format(", {} without a stencil", *info.n_irregular) : "";
+  const auto irregular = info.n_irregular ? fmt::format(", {} off the regular grid", *info.n_irregular) : "";
   list.add("nodes", fmt::format("{} ({} on the interface{})", info.n_nodes, info.n_interface, irregular));
   list.add("cells", fmt::format("{}", info.n_cells));
 }
@@ -125,7 +127,8 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
 
 void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
   if (rupture.nominal) {
-    list.add("rupture", "at t = mu_s p under the nominal pressure; `run` gives S along the interface");
+    list.add("lengths below",
+             "at t = mu_s p under the nominal pressure; `run` gives S and what follows from it");
   } else {
     list.add("strength excess S", text_of(rupture.of_nodes.S) + " (least, median, largest)");
     list.add("seismic ratio 1/(1 + S)", text_of(rupture.of_nodes.drop_ratio));
@@ -237,6 +240,11 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
   add_costs(info, list);
   if (sharing) add_shared(*info.shared, *sharing, list);
   if (info.loads) add_loads(*info.loads, list);
+  if (config.loading.shear_speed_over_c_L > 0)
+    list.add("upper edge during the event",
+             fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
+                         config.loading.shear_speed_over_c_L * info.speeds.c_L,
+                         config.loading.shear_speed_over_c_L * info.speeds.c_L * config.time.end_s));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);

@@ -55,6 +55,9 @@ void print_rupture(const run::RuptureOutlook& rupture) {
   std::string text = fmt::format("S before the event, inside: {:.3g}", o.S.median);
   if (o.S.least < o.S.largest)
     text += fmt::format(" in the median, {:.3g} to {:.3g}", o.S.least, o.S.largest);
+  if (o.n_barriers > 0 && o.n_barriers < o.n_nodes)
+    text += fmt::format(", at {} of {} nodes; at the others t is below mu_k p, or S above {:g}",
+                        o.n_nodes - o.n_barriers, o.n_nodes, stability::barrier_S);
   if (o.nucleation_length_m) text += fmt::format("; nucleation length {:.3g} m", *o.nucleation_length_m);
   if (o.griffith_half_length_m)
     text += fmt::format(", critical crack {:.3g} m", 2 * *o.griffith_half_length_m);
@@ -67,8 +70,12 @@ std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds
   std::vector<double> v_m_per_s;
   for (const auto& point : front.points) v_m_per_s.push_back(point.v_tip_m_per_s);
   const double median = fronts::median(v_m_per_s);
+  const auto fast =
+      std::ranges::find_if(front.points, [&](const auto& point) { return point.v_tip_m_per_s > speeds.c_S; });
   if (std::isfinite(median))
-    return fmt::format("median speed {:.2f} c_L, {:.2f} c_S", median / speeds.c_L, median / speeds.c_S);
+    return fmt::format(
+        "median speed {:.2f} c_L, {:.2f} c_S{}", median / speeds.c_L, median / speeds.c_S,
+        fast == front.points.end() ? "" : fmt::format(", above c_S first at {:.4f} m", fast->x_m));
   const auto is_triggered = [](const auto& point) {
     return point.speed_kind == fronts::SpeedKind::triggered;
   };
@@ -91,6 +98,10 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
   else
     print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
           initial.critical_shear_m);
+  if (const double speed_m_per_s = result.config.loading.shear_speed_over_c_L * result.speeds.c_L;
+      speed_m_per_s > 0)
+    print("the upper edge moves to +x at {:.3g} m/s during the event (loading.shear_speed_over_c_L)\n",
+          speed_m_per_s);
   print(
       "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
       "updates/s\n",
@@ -103,7 +114,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
           1e6 * front.points.back().onset_s, speed_text(front, result.speeds), fronts::name(front.mode),
           fronts::name(front.end));
   }
-  print_rupture(run::rupture_outlook(result.config, initial));
+  print_rupture(run::rupture_outlook(result.config, initial.common));
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
 }

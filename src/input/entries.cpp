@@ -504,14 +504,14 @@ void add_loading(EntryList& list) {
                   "preconditioner, or by the one of both that suits the number of elements; by PETSc, shared "
                   "by the processes of a run, where the program was built with it")),
       });
-  list.add(
-      Stage::motion,
-      {
-          number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
-                 {0, 1, false, true},
-                 "speed of the top edge to +x over the longitudinal wave speed; 0, held still, only with "
-                 "loading.method = prestress"),
-      });
+  list.add(Stage::motion,
+           {
+               number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
+                      {0, 1, false, true},
+                      "speed of the top edge to +x over the longitudinal wave speed, in a ramp and during "
+                      "the event; 0 "
+                      "holds it still, which a ramp and event.kind = spontaneous do not allow"),
+           });
   list.add(
       Stage::statics,
       {
@@ -679,8 +679,8 @@ void add_time(EntryList& list) {
           word<StepperKind>(
               "time.stepper", at(&Case::time, &TimeStepping::stepper),
               {{"fast", StepperKind::fast}, {"plain", StepperKind::plain}},
-              "how steps are computed; plain: cell by cell as src/motion/step.hpp has it, for "
-              "experiments with the scheme, a hundred times slower, with loading.method not ramp"),
+              "how steps are computed; plain: cell by cell as the scheme is written down, for "
+              "experiments with it, twenty to a hundred times slower, with loading.method not ramp"),
           word<Precision>("time.precision", at(&Case::time, &TimeStepping::precision),
                           {{"double", Precision::double_precision}, {"single", Precision::single_precision}},
                           "numbers for rows of the plate beyond those next to the interface; single with "
@@ -750,7 +750,9 @@ void add_probes(EntryList& list) {
                texts("probes.names", at(&Case::probes, &Probes::names),
                      "of the same places, all different; without them their numbers, from 1"),
                number("probes.interval_s", at(&Case::probes, &Probes::interval_s), above(0),
-                      "spacing of the rows of probes.h5; one step where that is longer"),
+                      "spacing of the rows of probes.h5, each at the step nearest after its time; one step "
+                      "where that is "
+                      "longer"),
            });
 }
 

@@ -63,9 +63,14 @@ void check_element_size(const Case& config) {
 void check_prestress(const Case& config, const Document& document) {
   const Key method("loading.method"), kind("event.kind");
   if (is_tilted(config)) {
-    if (config.loading.shear_speed_over_c_L > 0) return;
-    throw UserError("{} is 0; that holds the top edge still, choose {} = prestress or a speed greater than 0",
-                    Key("loading.shear_speed_over_c_L"), method);
+    const bool is_driven = config.loading.method == statics::LoadingMethod::ramp ||
+                           config.event == interface::EventKind::spontaneous;
+    if (config.loading.shear_speed_over_c_L > 0 || !is_driven) return;
+    throw UserError(
+        "{} is 0; that holds the top edge still, which a ramp or {} = spontaneous needs to move; choose a "
+        "speed "
+        "greater than 0",
+        Key("loading.shear_speed_over_c_L"), kind);
   }
   const Key t("prestress.t_Pa"), p("prestress.p_Pa");
   const bool uniform = document.find(t.name) && document.find(p.name);

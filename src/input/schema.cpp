@@ -235,7 +235,7 @@ std::string drop_parameters_of_other_laws(const Case& config, Document& document
 }
 
 /// Symbols and short names that stand for a key's last part.
-constexpr std::array<std::pair<const char*, const char*>, 9> short_names = {
+constexpr std::array<std::pair<const char*, const char*>, 11> short_names = {
     {{"E", "youngs_modulus_Pa"},
      {"youngs_modulus", "youngs_modulus_Pa"},
      {"nu", "poissons_ratio"},
@@ -244,7 +244,9 @@ constexpr std::array<std::pair<const char*, const char*>, 9> short_names = {
      {"beta", "stiffness_damping_s"},
      {"beta_R", "stiffness_damping_s"},
      {"damping", "stiffness_damping_s"},
-     {"h", "element_size_m"}}};
+     {"h", "element_size_m"},
+     {"normal_force_N", "normal_force_N_per_m"},
+     {"shear_force_N", "shear_force_N_per_m"}}};
 
 /// The key of the same table that a short name stands for.
 std::optional<std::string> key_of_short_name(const std::string& key) {
@@ -275,13 +277,18 @@ std::optional<std::string> key_of_short_name(const std::string& key) {
     keys.push_back(entry.key);
   }
   const auto guess = nearest_key(key, keys);
-  // A parameter of another law, but for its unit, before one of this law that is only alike.
-  if (!guess || plain_key(*guess) != plain_key(key))
+  // A key that does not apply, or a parameter of another law, but for its unit, before one that is only
+  // alike.
+  if (!guess || plain_key(*guess) != plain_key(key)) {
+    for (const Entry& entry : common_entries())
+      if (plain_key(entry.key) == plain_key(key))
+        throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, entry.key);
     for (const LawEntries& law : friction_laws())
       for (const Entry& entry : law.entries)
         if (plain_key(entry.key) == plain_key(key))
           throw UserError("{}: unknown key {}; did you mean {} of the friction law {}?", setting.place, key,
                           entry.key, law.name);
+  }
   if (guess) throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *guess);
   throw UserError("{}: unknown key {}; the command `slipfront keys` lists all", setting.place,
                   files::shortened(key));

@@ -292,7 +292,12 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   const bool is_by_interface = sharing && leader_has_interface_only(config, sharing->n_processes);
   const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
   add_sizes(config, meshes, info);
-  info.rupture = rupture_outlook(config, meshes);
+  if (const auto loaded = loaded_state(config, meshes)) {
+    info.loads = loaded->loads;
+    info.rupture = rupture_outlook(config, loaded->common);
+  } else {
+    info.rupture = rupture_outlook(config, meshes);
+  }
   info.cheapest_mesh = cheapest_mesh(config, info.rupture);
 
   // About as long as making the stepper.
@@ -316,7 +321,6 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   }
   info.expected_s =
       info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
-  info.loads = find_loads(config, meshes);
   info.notes = notes_of_case(config, info.rupture, info.step_s);
   if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
   return info;

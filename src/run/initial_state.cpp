@@ -293,7 +293,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   return initial;
 }
 
-std::optional<FoundLoads> find_loads(const input::Case& config, const Meshes& meshes) {
+std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes) {
   if (!has_forces(config) || meshes.plate.is_interface()) return {};
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
@@ -304,8 +304,9 @@ std::optional<FoundLoads> find_loads(const input::Case& config, const Meshes& me
                                  interface::static_coefficient_key(config.friction));
   const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
   const auto critical = statics.shear_to(1);
-  return found_loads(config, statics, critical, common_state(config, statics, critical, tributary_m),
-                     tributary_m);
+  auto common = common_state(config, statics, critical, tributary_m);
+  const auto loads = found_loads(config, statics, critical, common, tributary_m);
+  return LoadedState{loads, std::move(common)};
 }
 
 }  // namespace slipfront::run

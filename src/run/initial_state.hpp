@@ -81,9 +81,13 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
                                 const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
                                 Processes* processes = nullptr, bool may_stay_distributed = false);
 
+struct LoadedState {
+  FoundLoads loads;
+  statics::Equilibrium common;  ///< see InitialState
+};
 /// What the forces of a case come to, by its statics; under loading.method = ramp as if it was direct. None
 /// where it gives none, or where the meshes are those of the interfaces alone.
-std::optional<FoundLoads> find_loads(const input::Case& config, const Meshes& meshes);
+std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes);
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);

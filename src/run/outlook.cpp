@@ -125,8 +125,8 @@ std::string caution_of_mesh(double zone_elements, double S) {
       fmt::format("the process zone has {:.3g} elements at rest and fewer in motion", zone_elements);
   if (zone_elements < fewest_elements) return is + "; below 3 the mesh decides on fronts and their speeds";
   if (zone_elements < elements_for_peaks) return is + "; peaks of slip rate and traction need 6";
-  if (zone_elements < elements_for_transition && S < stability::supershear_S)
-    return is + "; the place where fronts pass c_S, with S < 1.77, needs 16";
+  if (zone_elements < elements_for_transition && !(S >= stability::supershear_S))  // or unknown
+    return is + "; the place where fronts pass c_S, where S < 1.77, needs 16";
   return {};
 }
 
@@ -158,6 +158,8 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   o.trigger_length_m = trigger_length_m(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
+  if (const auto half_m = o.of_nodes.supershear_half_length_m; half_m && *half_m > config.plate.width_m)
+    o.of_nodes.regime += "; that is beyond the interface";
   add_cautions(config, o);
   if (const auto n_beyond = n_beyond_strength(placed); n_beyond > 0 && 2 * n_beyond <= std::ssize(placed))
     o.cautions.push_back(fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once",
@@ -170,27 +172,28 @@ void add_doubts(const input::Case& config, const std::vector<Placed>& placed, Ru
   for (auto& doubt : doubts_of_growth(config, o)) o.doubts.push_back(std::move(doubt));
 }
 
-RuptureOutlook outlook_of_state(const input::Case& config, const statics::Equilibrium& state) {
-  const auto placed = nodes_inside(config, state);
+}  // namespace
+
+RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before) {
+  const auto placed = nodes_inside(config, before);
   auto o = outlook_of(config, placed);
   add_doubts(config, placed, o);
   return o;
 }
 
-}  // namespace
-
-RuptureOutlook rupture_outlook(const input::Case& config, const InitialState& initial) {
-  return outlook_of_state(config, initial.common);
-}
-
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) {
   if (is_prestressed(config))
-    return outlook_of_state(
+    return rupture_outlook(
         config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)));
   const double p_Pa = nominal_pressure_Pa(config);
   const double strength_Pa = interface::static_coefficient(config.friction) * p_Pa;
   auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});
   o.nominal = true;
+  // S, and what follows from it, take the tractions along the interface.
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  o.of_nodes.S = o.of_nodes.drop_ratio = {unknown, unknown, unknown};
+  o.of_nodes.supershear_half_length_m.reset();
+  o.of_nodes.regime = "unknown before the statics give the tractions along the interface";
   o.doubts = doubts_of_growth(config, o);
   return o;
 }

@@ -30,9 +30,9 @@ inline constexpr double fewest_elements = 3, elements_for_peaks = 6, elements_fo
 /// cent.
 inline constexpr double harmless_damping = 0.02;
 
-/// Of a case that has its initial state.
-RuptureOutlook rupture_outlook(const input::Case& config, const InitialState& initial);
-/// Of a case alone.
+/// Of a case whose state before the event is known.
+RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before);
+/// Of a case alone, whose tractions are known where they are prescribed.
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes);
 
 }  // namespace slipfront::run

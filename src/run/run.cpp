@@ -234,7 +234,7 @@ void measure(Result& result, const InitialState& initial) {
   const auto& config = result.config;
   const auto options = front_options(config, initial);
   result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
-  auto rupture = rupture_outlook(config, initial);
+  auto rupture = rupture_outlook(config, initial.common);
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
   result.warnings = notes_of_case(config, rupture, result.step_s);

@@ -165,7 +165,7 @@ struct Info {
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = fronts::undefined;
   std::optional<Shared> shared;
-  std::optional<FoundLoads> loads;  ///< see find_loads
+  std::optional<FoundLoads> loads;  ///< see loaded_state
   std::vector<std::string> notes;   ///< see notes_of_case
 };
 

@@ -53,11 +53,14 @@ Pair pair_of(const Bodies& bodies) {
 
 /// Andrews's transition is that of equal bodies without damping.
 std::string supershear_regime(double half_length_m, Pair pair) {
-  const auto text = fmt::format("S < 1.77: fronts above c_S can form, {}{:.3g} m from the nucleation on",
-                                pair == Pair::equal ? "" : "between equal bodies ", half_length_m);
+  const auto text = fmt::format(
+      "S < 1.77: fronts above c_S can form, {}about {:.2g} m from a nucleation of the critical length on, "
+      "sooner "
+      "from a longer one",
+      pair == Pair::equal ? "without damping " : "between equal bodies ", half_length_m);
   if (pair == Pair::rigid) return text + "; on a rigid plane much earlier";
   if (pair == Pair::unlike) return text + "; between these no formula says where, often much earlier";
-  return text + " without damping";
+  return text;
 }
 
 std::string regime_of(const Outlook& o, Pair pair) {

@@ -60,11 +60,13 @@ double damping_length_m(const solid::Material& material) {
   return material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
 }
 
-std::string statement_of(const WellPosedness& w) {
+std::string statement_of(const WellPosedness& w, bool pressure_changes) {
   const bool drops = w.weakening_over_radiation > 1;
   if (w.unbounded)
     return fmt::format("ill-posed: shorter waves grow faster without bound ({}); the mesh decides",
-                       drops ? "weakening beyond radiation damping" : "friction coupled to pressure");
+                       drops              ? "weakening beyond radiation damping"
+                       : pressure_changes ? "friction coupled to pressure"
+                                          : "weakening with the slip rate feeds interface waves");
   if (w.fastest_growth_per_s == 0) return "well-posed: no wave grows on a half-space";
   if (w.growth_in_crossing > 1)
     return fmt::format(
@@ -145,7 +147,7 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
   w.growth_in_crossing = w.fastest_growth_per_s * element_size_m / fastest_speed_m_per_s;
   w.damping_length_m = std::min(damping_length_m(bodies.above), damping_length_m(other));
   w.damping_length_over_h = w.damping_length_m / element_size_m;
-  w.statement = statement_of(w);
+  w.statement = statement_of(w, !are_alike(bodies));
   return w;
 }
 

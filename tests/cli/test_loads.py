@@ -114,3 +114,28 @@ def test_the_resolved_case_runs_again_and_a_stopped_run_goes_on(program, case, t
     require_same_bytes(tmp_path / "out", tmp_path / "whole", *RESULTS)
     loads = [run_json(tmp_path / name)["statics"]["loads"] for name in ("whole", "again", "out")]
     assert loads[0] == loads[1] == loads[2]
+
+
+def test_info_of_forces_is_of_the_tractions_that_they_give(program, case, tmp_path):
+    law = sets("friction.law=slip_weakening", "friction.d_c_m=1e-6", "friction.mu_k=0.9")
+    told = re.search(r"strength excess S +\S+, (\S+), ", require_done(program("info", case, *law)).stdout)
+    require_done(program("run", case, "-q", "-o", "out", *law))
+    of_run = run_json(tmp_path / "out")["rupture"]["strength_excess_S"]["median"]
+    assert told[1] == f"{of_run:.3g}"
+
+
+def test_the_upper_edge_moves_during_the_event_unless_it_is_held(program, case, tmp_path):
+    held = sets("loading.shear_speed_over_c_L=0")
+    for settings, moves in (((), True), (held, False)):
+        info = require_done(program("info", case, *settings)).stdout
+        assert bool(re.search(r"upper edge during the event +moves to \+x at 0\.00158 m/s", info)) == moves
+        run = require_done(program("run", case, "-o", f"{moves}", *settings)).stdout
+        assert ("the upper edge moves to +x at 0.00158 m/s during the event" in run) == moves
+        table = np.genfromtxt(tmp_path / f"{moves}/energy.csv", delimiter=",", names=True, comments="#")
+        assert bool(table["top_work_J_per_m"][-1]) == moves
+
+
+@pytest.mark.parametrize("of_motion", ["loading.method=ramp", "event.kind=spontaneous"])
+def test_an_edge_that_is_held_brings_nothing_to_slip(program, coarse, of_motion):
+    line = refusal(program("validate", coarse, *sets("loading.shear_speed_over_c_L=0", of_motion)))
+    assert "loading.shear_speed_over_c_L is 0; that holds the top edge still" in line

@@ -126,3 +126,12 @@ def test_wrong_probes_are_refused_with_their_line(program, write_case, tmp_path,
         printed = refusal(program(*command, "--set", "plate.corner=relief"))
         assert printed.startswith(f"{case}:{text.count(chr(10)) + line}: ") and says in printed
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("y_m, n_near", [("[0.01, 0.0]", 0), ("[0.004, 0.0]", 1), ("[0.004, 0.002]", 2)])
+def test_probes_within_two_elements_of_the_interface_are_noted(program, probed, y_m, n_near):
+    printed = require_done(
+        program("validate", probed, *sets("plate.element_size_m=5e-3", f"probes.y_m={y_m}"))
+    ).stdout
+    note = f"note: probes: {n_near} of 2 are less than two elements, 0.01 m, from the interface"
+    assert (note in printed) == (n_near > 0)

@@ -175,3 +175,24 @@ def test_a_search_of_many_places_can_be_interrupted():
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, handler)
+
+
+@pytest.mark.parametrize(
+    "onset_us, step",
+    [
+        ([0, 70, 140, 210, 280], 10e-6),  # uniform: the last digit, not the time from place to place
+        ([0, 63, 141, 207, 283], 1e-6),  # rounded
+        ([0, 65, 140, 210, 285], 5e-6),
+        ([0, 70], 70e-6),  # nothing else is known
+    ],
+)
+def test_the_step_of_times_is_that_of_the_clock(onset_us, step):
+    found = slipfront.find_fronts(0.1 * np.arange(len(onset_us)), 1e-6 * np.array(onset_us))
+    assert found.time_step_s == pytest.approx(step)
+
+
+def test_a_record_from_right_to_left_is_turned_round(tmp_path):
+    rows = ["1.0,9", "0.5,5", "0.0,1"]
+    for name, order in (("down.csv", 1), ("up.csv", -1)):
+        (tmp_path / name).write_text("\n".join(["x_mm,time_us", *rows[::order]]) + "\n")
+    assert slipfront.read_onsets(tmp_path / "down.csv").equals(slipfront.read_onsets(tmp_path / "up.csv"))

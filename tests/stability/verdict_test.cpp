@@ -15,6 +15,7 @@ namespace {
 
 using interface::Coulomb;
 using interface::VelocityWeakening;
+using testing::HasSubstr;
 using testing::StartsWith;
 
 constexpr double h = 0.667e-3;
@@ -30,6 +31,7 @@ TEST(WellPosedness, CoulombOnARigidPlane) {
   const auto high = well_posedness(elastic, Coulomb{1.3}, 5e6, h, width);
   EXPECT_TRUE(high.unbounded);
   EXPECT_THAT(high.statement, StartsWith("ill-posed"));
+  EXPECT_THAT(high.statement, HasSubstr("friction coupled to pressure"));
   // 0.106 k c_S, to the three decimals of the reference.
   const double k_c_S = std::numbers::pi / h * solid::shear_speed_m_per_s(elastic);
   EXPECT_NEAR(high.growth_at_grid_per_s / k_c_S, 0.106, 5e-4);
@@ -46,6 +48,14 @@ TEST(WellPosedness, VelocityWeakeningAgainstRadiation) {
   EXPECT_GT(expected, 1);
   EXPECT_TRUE(w.unbounded);
   EXPECT_TRUE(std::isinf(w.fastest_growth_per_s));
+}
+
+TEST(WellPosedness, SlipOfEqualBodiesDoesNotChangeThePressure) {
+  const auto w =
+      well_posedness({elastic, elastic}, VelocityWeakening{.mu_s = 0.65, .mu_k = 0.6}, 5e6, h, width);
+  EXPECT_LT(w.weakening_over_radiation, 1);
+  EXPECT_TRUE(w.unbounded);
+  EXPECT_THAT(w.statement, HasSubstr("weakening with the slip rate feeds interface waves"));
 }
 
 TEST(WellPosedness, DampingGivesTheFastestWaveALength) {
