@@ -21,9 +21,10 @@ struct Contradiction {
   std::string text;
   std::vector<Override> overrides = {};
 };
-const std::string uniform = "[prestress]\nt_Pa = 1e6\np_Pa = 5e6\n[loading]\nmethod = \"prestress\"\n";
-const std::string at_rest = uniform + "[event]\nkind = \"none\"\n";
-const std::string patch = uniform + "[event]\nkind = \"nucleation\"\n[nucleation]\nx_m = 0.1\n";
+const std::string uniform_tractions =
+    "[prestress]\nt_Pa = 1e6\np_Pa = 5e6\n[loading]\nmethod = \"prestress\"\n";
+const std::string at_rest = uniform_tractions + "[event]\nkind = \"none\"\n";
+const std::string patch = uniform_tractions + "[event]\nkind = \"nucleation\"\n[nucleation]\nx_m = 0.1\n";
 const std::string on_steel =
     "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2e11\npoissons_ratio = 0.3\n"
     "density_kg_per_m3 = 7800\nstiffness_damping_s = 1e-7\n";
@@ -56,13 +57,18 @@ const Contradiction wrong_cases[] = {
     {"ElementOfALowerPlate", "[plate]\nelement_size_m = 1e-2\n", {{"plate.height_m", "1e-3"}}},
     // Loading
     {"TopHeld", "[loading]\nmethod = \"ramp\"\nshear_speed_over_c_L = 0 # here\n"},
-    {"TopHeldByTheMethod", uniform + "shear_speed_over_c_L = 0\n" + square, {{"loading.method", "direct"}}},
+    {"TopHeldByTheMethod",
+     uniform_tractions + "shear_speed_over_c_L = 0\n" + square,
+     {{"loading.method", "direct"}}},
     {"NoTractions", "[loading]\nmethod = \"prestress\" # here\n[prestress]\nt_Pa = 1e6\n"},
     {"Relief", at_rest + "[plate]\ncorner = \"relief\" # here\n"},
     {"ReliefByDefault", "[prestress]\nt_Pa = 1e6\np_Pa = 5e6\n[loading]\nmethod = \"prestress\" # here\n"},
-    {"SpontaneousEvent", uniform + "[event]\nkind = \"spontaneous\" # here\n" + square},
-    {"PeriodicEdge", uniform + "[event]\nkind = \"left\" # here\n" + square + "sides = \"periodic\"\n"},
-    {"EdgeMadePeriodic", uniform + "[event]\nkind = \"left\"\n" + square, {{"plate.sides", "periodic"}}},
+    {"SpontaneousEvent", uniform_tractions + "[event]\nkind = \"spontaneous\" # here\n" + square},
+    {"PeriodicEdge",
+     uniform_tractions + "[event]\nkind = \"left\" # here\n" + square + "sides = \"periodic\"\n"},
+    {"EdgeMadePeriodic",
+     uniform_tractions + "[event]\nkind = \"left\"\n" + square,
+     {{"plate.sides", "periodic"}}},
     {"Tilt", "[loading]\ntilt_left_m = 0.1 # here\n"},
     {"TiltOfALowerPlate", "[plate]\nelement_size_m = 1e-4\nheight_m = 3e-4 # here\n"},
     {"TiltWithAForce", "[loading]\nmean_pressure_Pa = 1e6\ntilt_difference_m = -0.1 # here\n"},

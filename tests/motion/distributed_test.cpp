@@ -196,15 +196,15 @@ void expect_same(const Outcome& one, const Outcome& several, double rounding) {
   EXPECT_EQ(one.node_updates, several.node_updates);
 }
 
-constexpr std::int64_t n_steps = 150;
+constexpr std::int64_t run_steps = 150;
 
 void expect_parts_change_nothing(const Problem& problem, std::vector<int> numbers = {2, 3}) {
-  const auto one = run_by_one(problem, n_steps);
+  const auto one = run_by_one(problem, run_steps);
   EXPECT_GT(one.record.onsets.size(), 20U);
   for (const int n : numbers) {
     SCOPED_TRACE(fmt::format("{} processes", n));
     const bool is_single = problem.time.precision == Precision::single_precision;
-    expect_same(one, run_by(n, problem, n_steps), is_single ? 1e-7 : 1e-13);
+    expect_same(one, run_by(n, problem, run_steps), is_single ? 1e-7 : 1e-13);
   }
 }
 
@@ -286,7 +286,7 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
   repeating.plate.top = mesh::Top::absorbing;
   for (auto problem : {even, of_two, of_graded, of_two_graded, repeating}) {
     problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
-    const auto one = run_by_one(problem, n_steps);
+    const auto one = run_by_one(problem, run_steps);
     Team two(2, problem), three(3, problem);
     Journey journey(two.begin());
     // Probes' velocities begin anew with each stepper.
@@ -309,10 +309,10 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
     restore(kept, by_one, whole);
     restore_pieces(two.stepper(), {keep(by_one, whole)});
     auto by_two = journey;
-    take_steps(journey, by_one, n_steps - first - second);
+    take_steps(journey, by_one, run_steps - first - second);
     compare();
     journey = by_two;
-    take_steps(journey, two.stepper(), n_steps - first - second);
+    take_steps(journey, two.stepper(), run_steps - first - second);
     compare();
   }
 }

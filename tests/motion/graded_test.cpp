@@ -32,7 +32,7 @@ mesh::Plate graded_plate(Corner corner, int coarsenings = 2) {
   return plate;
 }
 
-const statics::Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.05e-3, .edge_margin_m = 2e-3};
+const statics::Loading graded_loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.05e-3, .edge_margin_m = 2e-3};
 
 TimeStepping stepping(int substeps, bool local) {
   return {.interface_rows = 3, .interface_substeps = substeps, .local_steps = local};
@@ -67,7 +67,7 @@ TEST_P(GradedPlate, LargerElementsTakeLargerSteps) {
 }
 
 TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
-  const auto e = statics::Statics(mesh_, {}, loading, mu_s).shear_to(0.9);
+  const auto e = statics::Statics(mesh_, {}, graded_loading, mu_s).shear_to(0.9);
   for (const auto algorithm : support::algorithms) {
     Stepper stepper(mesh_, {}, support::with_algorithm(support::gentle_law, algorithm), time_);
     stepper.start(e, 0.2, support::left_trigger(e, mesh_, mu_s));
@@ -113,7 +113,7 @@ TEST_P(GradedPlate, FlightDoesNotGrow) {
 TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
   // Several rows of the largest elements.
   const auto mesh = mesh::make_plate(graded_plate(std::get<0>(GetParam()), 1));
-  const auto e = statics::Statics(mesh, {}, loading, mu_s).shear_by(0.02e-3);
+  const auto e = statics::Statics(mesh, {}, graded_loading, mu_s).shear_by(0.02e-3);
   const auto run = [&](const Execution& execution) {
     Stepper stepper(mesh, {}, support::gentle_law, time_, execution);
     stepper.start(e, 0.2, support::left_trigger(e, mesh, mu_s));
@@ -228,7 +228,7 @@ TEST(GeneralMesh, MovesAsThePlainPlate) {
   auto general = mesh;
   const auto number = mesh::near_numbers(mesh);
   mesh::renumber(general, number);
-  const auto e = statics::Statics(mesh, {}, loading, mu_s).shear_to(0.9);
+  const auto e = statics::Statics(mesh, {}, graded_loading, mu_s).shear_to(0.9);
   auto renumbered = e;
   for (std::size_t n = 0; n < number.size(); ++n) {
     renumbered.u_m.x[number[n]] = e.u_m.x[n];

@@ -58,7 +58,8 @@ TEST(Recorder, LocatesTheOnsetInsideTheStep) {
   EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1.5);
   EXPECT_EQ(record.end_time_s, 4);
   EXPECT_EQ(record.x_m, at_rest().tractions.x_m);
-  // Tractions interpolated to that time; at the node itself the strength static_mu p, not the weakened traction.
+  // Tractions interpolated to that time; at the node itself the strength static_mu p, not the weakened
+  // traction.
   EXPECT_EQ(record.halo, 1);
   const auto around = record.around_onset(0);
   ASSERT_EQ(around.size(), 3);
@@ -125,8 +126,9 @@ TEST(Recorder, ANodeThatWasNotPressedBeginsNow) {
 }
 
 TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
-  // A strength that is not static_mu p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
-  // trial traction rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.
+  // A strength that is not static_mu p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while
+  // the trial traction rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the
+  // step.
   auto first = unchanged(), second = unchanged();
   first.t_Pa[2] = 1.6;
   set(second, 2, 1.92, 1.6, 4, true);

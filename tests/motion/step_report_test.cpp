@@ -10,7 +10,7 @@ namespace slipfront::motion {
 namespace {
 
 constexpr std::size_t n_around = 3;
-constexpr int n_reported = 4, substeps = 2, sampled_rows = 2;
+constexpr int n_reported = 4, n_reported_substeps = 2, sampled_rows = 2;
 
 /// Of nodes [first, first + n): each value tells where it belongs.
 StepReport of_nodes(int first, int n, int n_probes) {
@@ -24,7 +24,7 @@ StepReport of_nodes(int first, int n, int n_probes) {
   }
   for (int step = 0; step < n_reported; ++step)
     report.rates.push_back({first != 5 || step != 2, static_cast<double>(first * (step % 2)), 0.5 * first});
-  for (int update = 0; update < n_reported * substeps; ++update) {
+  for (int update = 0; update < n_reported * n_reported_substeps; ++update) {
     SlipUpdate seen;
     seen.time_s = update;
     seen.moves = update == first;

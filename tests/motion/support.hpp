@@ -106,10 +106,10 @@ inline const interface::ContactModel gentle_law {
 inline const statics::Loading tilted{.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3};
 
 /// A trigger at the left edge of the state.
-inline Loads left_trigger(const statics::Equilibrium& state, const mesh::Mesh& mesh, double mu_s) {
+inline Loads left_trigger(const statics::Equilibrium& state, const mesh::Mesh& mesh, double mu_at_rest) {
   const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
   return {.trigger_force_N_per_m = trigger_forces(state, mesh::tributary_lengths_m(mesh),
-                                                  interface::EventKind::left, trigger, mu_s),
+                                                  interface::EventKind::left, trigger, mu_at_rest),
           .trigger = trigger};
 }
 

@@ -39,7 +39,7 @@ void tilt_until_it_opens(input::Case& c) {
   c.loading.edge_margin_m = 0.05;
 }
 
-const Row rows[] = {
+const Row loads_of_rows[] = {
     {"level", [](input::Case& c) { c.plate.corner = mesh::Corner::none; }},
     {"relieved corners", [](input::Case&) {}},
     {"tilted", [](input::Case& c) { c.loading.tilt_difference_m = 0.3e-3; }},
@@ -111,7 +111,7 @@ void expect_same_state(const statics::Equilibrium& a, const statics::Equilibrium
 }
 
 TEST(Loads, TheInterfaceBearsTheForcesThatAreAsked) {
-  for (const auto& row : rows) {
+  for (const auto& row : loads_of_rows) {
     SCOPED_TRACE(row.name);
     const auto c = case_of(row);
     const auto initial = make_initial_state(c, go_on);
@@ -139,7 +139,7 @@ TEST(Loads, TheInterfaceBearsTheForcesThatAreAsked) {
 }
 
 TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
-  for (const auto& row : rows) {
+  for (const auto& row : loads_of_rows) {
     SCOPED_TRACE(row.name);
     const auto c = case_of(row);
     const auto expected = make_initial_state(c, go_on);
@@ -163,7 +163,7 @@ TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
 }
 
 TEST(Loads, SolversFindTheSame) {
-  for (const auto& row : rows) {
+  for (const auto& row : loads_of_rows) {
     if (row.tolerance < 1e-8) continue;  // those of a factorisation
     SCOPED_TRACE(row.name);
     auto c = case_of(row);
@@ -174,7 +174,7 @@ TEST(Loads, SolversFindTheSame) {
 }
 
 TEST(Loads, TheWholeCriticalOneIsThatOfTheMargin) {
-  auto c = case_of(rows[2]);
+  auto c = case_of(loads_of_rows[2]);
   c.loading.shear_over_critical = 1;
   const auto whole = make_initial_state(c, go_on);
   EXPECT_NEAR(whole.common.shear_m, whole.critical_shear_m, 1e-9 * whole.critical_shear_m);
@@ -189,7 +189,7 @@ TEST(Loads, TheWholeCriticalOneIsThatOfTheMargin) {
 
 TEST(Loads, LevelCompressionOfAColumnIsUniform) {
   // Without Poisson's effect the stress is uniform, p = u E/H.
-  auto c = case_of(rows[0]);
+  auto c = case_of(loads_of_rows[0]);
   c.material.poissons_ratio = 0;
   const auto initial = make_initial_state(c, go_on);
   const double u_m = p_Pa * c.plate.height_m / c.material.youngs_modulus_Pa;
@@ -199,7 +199,7 @@ TEST(Loads, LevelCompressionOfAColumnIsUniform) {
 
 TEST(Loads, WhatNoShearGivesIsRefused) {
   const auto refusal_of = [](double shear_N_per_m, double tilt_difference_m) {
-    auto c = case_of(rows[1]);
+    auto c = case_of(loads_of_rows[1]);
     c.loading.shear_over_critical = {};
     c.loading.shear_force_N_per_m = shear_N_per_m;
     c.loading.tilt_difference_m = tilt_difference_m;
@@ -220,7 +220,7 @@ TEST(Loads, ARampBeginsUnderTheForce) {
 }
 
 TEST(Loads, AreThoseOfInfoAndOfNoOtherCase) {
-  auto c = case_of(rows[2]);
+  auto c = case_of(loads_of_rows[2]);
   const auto expected = *make_initial_state(c, go_on).loads;
   const auto found = info(c).loads;
   ASSERT_TRUE(found);
@@ -232,7 +232,7 @@ TEST(Loads, AreThoseOfInfoAndOfNoOtherCase) {
 }
 
 TEST(Loads, EventsShareTheStateOfTheirForces) {
-  const auto c = case_of(rows[1]);
+  const auto c = case_of(loads_of_rows[1]);
   auto right = c, sheared = c, pressed = c;
   right.event = EventKind::right;
   sheared.loading.shear_over_critical = 0.8;
