@@ -238,7 +238,7 @@ def find_fronts(
     that are less apart are undefined. Without it that of the fronts' speeds is the largest step of which
     all times are multiples; of an exactly uniform front the last digit of its times.
     never_slipped: the number in onset_s that marks a place that never slips; "none" if every number is a
-    time. Without it -1 is such a mark where all others are at least 0, and so are 999, 1e9 and the like
+    time. Without it -1, -99 and the like are such marks where all others are at least 0, and so are 999, 1e9
     farther from the others than these are from each other; a UserWarning says so.
     settings: None in it are: l_star_m the median spacing; min_length_m twice that; arrest_time_s 5 times
     what a front takes, at the median speed between neighbours, for min_length_m or the largest spacing
@@ -251,6 +251,8 @@ def find_fronts(
     x, onset = array(x_m, "x_m", finite=True), array(onset_s, "onset_s")
     t_s = np.full_like(x, np.nan) if t_s_Pa is None else array(t_s_Pa, "t_s_Pa")
     p_s = np.ones_like(x) if p_s_Pa is None else array(p_s_Pa, "p_s_Pa")
+    if np.any(p_s < 0):
+        raise CaseError("p_s_Pa has negative values; pressure is positive in compression")
     if never_slipped is not None and never_slipped != NONE:
         never_slipped = number(never_slipped, "never_slipped")
     onset, notes = without_marks(onset, never_slipped)

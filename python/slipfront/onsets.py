@@ -66,9 +66,10 @@ def columns_of(where: Any, names: list[str]) -> dict[str, tuple[str, float]]:
 
 
 def is_sentinel(value: float) -> bool:
-    """Whether a number is one that programs write for nothing: -1, nines, powers of ten from 1e6."""
+    """Whether a number is one that programs write for nothing: -1, -9, -99, 999, powers of ten from 1e6."""
     size = f"{abs(value):.17g}"
-    return value == -1 or re.fullmatch(r"999+|1(0{6,}|e\+\d+)", size) is not None
+    usual = r"1|9+" if value < 0 else r"999+"
+    return re.fullmatch(rf"{usual}|1(0{{6,}}|e\+\d+)", size) is not None
 
 
 def without_marks(
@@ -76,8 +77,9 @@ def without_marks(
 ) -> tuple[Any, list[str]]:
     """Times, NaN where a place never slips, and what is said of that.
 
-    never_slipped: the number that marks such a place; "none": there is none; None: -1 where all others are
-    at least 0, and 999, 1e9 and the like farther from the others than these are from each other."""
+    never_slipped: the number that marks such a place; "none": there is none; None: -1, -99 and the like where
+    all others are at least 0, and 999, 1e9 and the like farther from the others than these are from each
+    other."""
     made = np.where(np.isfinite(times), times, np.nan)
     missing = np.isnan(made)
     notes = [f"{n_places(missing.sum())} without a time: never slipped"] if missing.any() else []
@@ -96,13 +98,19 @@ def without_marks(
         if not is_sentinel(float(value)) or rest.size == 0:
             continue
         gap = max(rest.min() - value, value - rest.max())
-        if (value == -1 and rest.min() >= 0) or gap > rest.max() - rest.min():
+        if (value < 0 <= rest.min()) or gap > rest.max() - rest.min():
             marked = made == value
             notes.append(
                 f"{n_places(marked.sum())} with the time {value:g} {unit} taken as never slipped; "
                 "if it is a time, set never_slipped to none"
             )
             made[marked] = np.nan
+    zero = np.flatnonzero(made == 0)
+    if zero.size > 1 and np.diff(zero).max() > 1:
+        notes.append(
+            f"{n_places(zero.size)} apart from one another with the time 0; if nothing slips there, set "
+            "never_slipped to 0"
+        )
     return made, notes
 
 

@@ -7,6 +7,7 @@ import os
 import shutil
 import weakref
 from collections.abc import Callable
+from copy import deepcopy
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -132,14 +133,14 @@ class OpenRun:
     @property
     def info(self) -> dict[str, Any]:
         """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings."""
-        return self._place.info
+        return deepcopy(self._place.info)  # what others read stays as the file has it
 
     @property
     def status(self) -> str:
         """How the run ended: complete, interrupted, blew_up, failed, or running."""
         return self._place.status
 
-    @cached_property
+    @property
     def case(self) -> dict[str, Any]:
         """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
         are the copies of the run, by their whole paths."""

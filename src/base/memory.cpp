@@ -17,14 +17,16 @@ namespace slipfront {
 
 namespace {
 
-/// What a limit on the process's addresses, `ulimit -v`, leaves.
-double left_by_limit_bytes() {
+/// What a limit on a part of the process's memory leaves. @param column  of /proc/self/statm, which has the
+/// part
+double left_by_limit_bytes(int resource, int column) {
   constexpr double without_limit = std::numeric_limits<double>::infinity();
   rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return without_limit;
+  if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return without_limit;
   std::ifstream file("/proc/self/statm");
   double pages = 0;
-  if (!(file >> pages)) return without_limit;
+  for (int k = 0; k <= column; ++k)
+    if (!(file >> pages)) return without_limit;
   const double taken = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
   return std::max(static_cast<double>(limit.rlim_cur) - taken, 0.0);
 }
@@ -43,7 +45,9 @@ double free_memory_bytes() {
 }  // namespace
 
 double available_memory_bytes() {
-  return std::min(free_memory_bytes(), left_by_limit_bytes());
+  constexpr int addresses = 0, data = 5;  // `ulimit -v`, `ulimit -d`
+  return std::min({free_memory_bytes(), left_by_limit_bytes(RLIMIT_AS, addresses),
+                   left_by_limit_bytes(RLIMIT_DATA, data)});
 }
 
 // Sanitizers have their own allocator, beside which the C library's is not set up.

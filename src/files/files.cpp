@@ -206,11 +206,13 @@ void make_folders(const std::filesystem::path& dir) {
 
 std::filesystem::path resolved(std::filesystem::path path) {
   if (!path.has_filename()) path = path.parent_path();
-  std::error_code ignored;
+  std::error_code error;
   std::filesystem::path begin;
-  for (const auto& part : path)
-    if (std::filesystem::is_symlink(begin /= part, ignored))
-      return std::filesystem::weakly_canonical(path, ignored);
+  for (const auto& part : path) {
+    if (!std::filesystem::is_symlink(begin /= part, error)) continue;
+    auto real = std::filesystem::weakly_canonical(path, error);
+    return error ? path : real;  // links that lead nowhere: whoever uses the path says so
+  }
   return path;
 }
 

@@ -32,10 +32,10 @@ constexpr const char* state_name = "state";
 /// Names the kind of work, and tells a folder of this program from a foreign one of the same name.
 constexpr const char* kind_name = "kind";
 
-/// Results of a run by versions that wrote no list of checksums.
-constexpr std::array<const char*, 7> unlisted_results = {"case.resolved.toml", "run.json",   "interface.h5",
-                                                         "fronts.csv",         "static.csv", "energy.csv",
-                                                         "fields.vtkhdf"};
+/// Names that a run's results have.
+constexpr std::array<const char*, 7> names_of_run = {"case.resolved.toml", "run.json",   "interface.h5",
+                                                     "fronts.csv",         "static.csv", "energy.csv",
+                                                     "fields.vtkhdf"};
 
 std::string overwrite_option() {
   return for_caller("--overwrite", "overwrite=True");
@@ -55,6 +55,12 @@ std::string read_line(const fs::path& file) {
   std::string line;
   std::getline(stream, line);
   return files::one_line(line);
+}
+
+/// The page that `slipfront report` makes of results; with others it would be out of date.
+void remove_report(const fs::path& dir) {
+  const auto file = dir / "report.html";
+  if (read_line(file).starts_with("<!DOCTYPE html><!-- slipfront report -->")) files::remove_file(file);
 }
 
 std::string host_and_process() {
@@ -125,15 +131,25 @@ std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = ""
   return names;
 }
 
-/// The files of an earlier set; of a damaged list nothing is believed.
+/// The files of an earlier set. Of a damaged list nothing is believed: in a folder that holds a run they are
+/// those that a run has.
 std::set<std::string> earlier_set(const fs::path& dir) {
   std::set<std::string> names;
   try {
     names = set_of(dir);
   } catch (const UserError&) {
   }
-  for (const char* name : unlisted_results) names.insert(name);
+  if (names.empty() && files::is_file(dir / "run.json") && files::is_file(dir / "case.resolved.toml"))
+    names.insert(names_of_run.begin(), names_of_run.end());
   return names;
+}
+
+/// Refuses to replace a file that is not of an earlier set.
+void require_of_set(const std::set<std::string>& earlier, const fs::path& dir, const std::string& name,
+                    const std::string& results_are) {
+  if (files::is_there(dir / name) && !earlier.contains(name))
+    throw UserError("{}: is not of earlier results, and would be replaced; move it away{}",
+                    (dir / name).string(), results_are);
 }
 
 /// Removes what writing that was cut off has left.
@@ -231,6 +247,9 @@ void ResultFolder::give_back() {
 
 void ResultFolder::make() {
   std::error_code error;
+  if (dir_.relative_path().empty())
+    throw UserError("output folder \"{}\": is {}; name a folder for these results", dir_.string(),
+                    dir_.empty() ? "no name" : "the root of all folders");
   // Its own end would take what another process keeps in it.
   for (fs::path p = fs::absolute(dir_, error); p.has_relative_path(); p = p.parent_path()) {
     const auto name = p.filename();
@@ -251,7 +270,7 @@ void ResultFolder::make() {
   if (error) throw_unusable(dir_, "created", error.value());
   outermost_made_ = outermost;
   if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
-  auto names = std::vector<const char*>(unlisted_results.begin(), unlisted_results.end());
+  auto names = std::vector<const char*>(names_of_run.begin(), names_of_run.end());
   names.push_back(files::checksum_list);
   for (const char* name : names)
     if (files::is_folder(dir_ / name))
@@ -299,7 +318,11 @@ bool ResultFolder::has_unfinished() const {
 }
 
 void ResultFolder::require_empty(bool overwrite, bool resumes) const {
-  if (overwrite) return;
+  if (overwrite) {
+    const auto earlier = earlier_set(dir_);
+    for (const std::string name : names_of_run) require_of_set(earlier, dir_, name, "");
+    return;
+  }
   const bool goes_on = resumes && has_unfinished();
   if (is_under_way(unfinished()) && !goes_on) {
     const std::string work = read_line(state() / kind_name), command = work.substr(0, work.find(" with "));
@@ -335,8 +358,10 @@ void ResultFolder::abandon() {
 }
 
 void ResultFolder::publish(bool adds) {
+  const auto earlier = earlier_set(dir_);
+  const auto results_are = fmt::format("; the results are in {}", unfinished().string());
   walk(
-      unfinished(), "", [](const std::string&) {},
+      unfinished(), "", [&](const std::string& name) { require_of_set(earlier, dir_, name, results_are); },
       [&](const std::string& name) {
         if (files::is_there(dir_ / name) && !files::is_folder(dir_ / name))
           throw UserError("{}: is no folder, where one is to go; move it away", (dir_ / name).string());
@@ -367,6 +392,7 @@ void ResultFolder::finish_publication() {
     for (const auto& name : stale)
       if (is_list(name)) files::remove_file(dir_ / name);
     remove_empty_folders(dir_, stale);
+    remove_report(dir_);
     walk(
         publishing(), "",
         [&](const std::string& name) {

@@ -242,7 +242,7 @@ void measure(Result& result, const InitialState& initial) {
   if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();
-  if (!initial.prescribed && after.trigger_work > 0.1 * before.strain)
+  if (!initial.prescribed && before.strain > 0 && after.trigger_work > 0.1 * before.strain)
     result.warnings.push_back(
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, "
                     "and drives the motion behind the front",

@@ -4,6 +4,9 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <system_error>
+#include <utility>
+
 #include "base/error.hpp"
 #include "base/state.hpp"
 #include "results/archive.hpp"
@@ -16,16 +19,16 @@ std::string state_key(const input::Case& config) {
   return files::sha256(program_identity() + "\n" + initial_state_key(config));
 }
 
-/// Another process may make it at the same time.
-void make_shared_folder(const std::filesystem::path& dir) {
-  try {
-    if (!files::is_folder(dir)) files::make_folder(dir);
-  } catch (const WriteError&) {
-    if (!files::is_folder(dir)) throw;
-  }
-}
-
 }  // namespace
+
+SharedStates::SharedStates(std::filesystem::path dir) : dir_(files::resolved(std::move(dir))) {
+  std::error_code error;
+  std::filesystem::create_directory(dir_, error);  // another process may do so at the same time
+  if (!files::is_folder(dir_) || ::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0)
+    throw UserError(
+        "folder of states {}: {}; choose another place", dir_.string(),
+        files::is_there(dir_) && !files::is_folder(dir_) ? "is a file" : "cannot be made or written");
+}
 
 std::filesystem::path SharedStates::file_of(const std::string& key) const {
   return dir_ / ("state-" + key.substr(0, 32) + ".bin");
@@ -54,7 +57,6 @@ std::optional<InitialState> SharedStates::take(const input::Case& config,
 }
 
 void SharedStates::keep(const input::Case& config, InitialState& initial) const {
-  make_shared_folder(dir_);
   const auto key = state_key(config);
   // Under a separate name until it is complete: others may be writing the same state.
   char host[256] = {};

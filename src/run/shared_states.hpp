@@ -16,8 +16,9 @@ namespace slipfront::run {
 /// solve the same state at the same time each does so for itself.
 class SharedStates {
  public:
-  /// @param dir  made when the first state is kept
-  explicit SharedStates(std::filesystem::path dir) : dir_(files::resolved(std::move(dir))) {}
+  /// @param dir  made where it is missing
+  /// @throws UserError where it cannot be used
+  explicit SharedStates(std::filesystem::path dir);
 
   /// The saved state of a case, with its mesh, if there is one. `note` receives a message for a file that is
   /// damaged or of another case.

@@ -33,12 +33,14 @@ class Program:
         self.folder = folder
         self.started = []
 
-    def __call__(self, *arguments, memory_bytes=None, file_bytes=None, stack_bytes=None):
+    def __call__(self, *arguments, memory_bytes=None, data_bytes=None, file_bytes=None, stack_bytes=None):
         def limit():
             if stack_bytes:
                 resource.setrlimit(resource.RLIMIT_STACK, (stack_bytes, stack_bytes))
             if memory_bytes:
                 resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
+            if data_bytes:
+                resource.setrlimit(resource.RLIMIT_DATA, (data_bytes, data_bytes))
             if file_bytes:
                 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
                 resource.setrlimit(resource.RLIMIT_FSIZE, (file_bytes, file_bytes))

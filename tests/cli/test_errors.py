@@ -268,3 +268,10 @@ def test_restart_of_a_complete_run_is_told(program, coarse, tmp_path):
     other = program("run", coarse, "--restart", "out", "--set", "friction.mu_k=0.7")
     assert "is another case" in refusal(other) and "mu_k = 0.6" in other.stderr
     assert tree(tmp_path) == before
+
+
+@pytest.mark.parametrize("megabytes", [10, 12])
+def test_a_limit_on_data_is_refused_as_one_on_memory_is(program, coarse, tmp_path, megabytes):
+    line = refusal(program("run", coarse, "-o", "out", data_bytes=megabytes << 20, memory_bytes=None))
+    assert "memory" in line
+    assert not (tmp_path / "out").exists()

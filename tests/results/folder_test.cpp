@@ -96,6 +96,39 @@ TEST_F(ResultFolders, WorkOfAnotherKindIsNotResumed) {
   EXPECT_FALSE(fs::exists(other.unfinished() / "run.json"));
 }
 
+TEST_F(ResultFolders, AFileThatIsNotOfTheEarlierSetIsNotReplaced) {
+  publish(folder_.path(), {"run.json"});
+  ResultFolder next(folder_.path(), "test");
+  next.begin();
+  files::write_text(next.unfinished() / "static.csv", "new");
+  test::write_file(folder_ / "static.csv", "mine");
+  EXPECT_EQ(
+      error_of([&] { next.require_empty(true); }),
+      (folder_ / "static.csv").string() + ": is not of earlier results, and would be replaced; move it away");
+  EXPECT_THAT(error_of([&] { next.publish(); }), HasSubstr("move it away; the results are in"));
+  EXPECT_EQ(test::read_file(folder_ / "static.csv"), "mine");
+  EXPECT_TRUE(fs::exists(folder_ / "run.json"));
+  ASSERT_TRUE(fs::remove(folder_ / "static.csv"));
+  next.publish();
+  EXPECT_EQ(test::read_file(folder_ / "static.csv"), "new");
+}
+
+TEST_F(ResultFolders, TheReportOfEarlierResultsGoesWithThem) {
+  const std::string page = "<!DOCTYPE html><!-- slipfront report -->\n";
+  for (const auto& [text, stays] : {std::pair{page, false}, {std::string("mine"), true}}) {
+    publish(folder_.path(), {"run.json"});
+    test::write_file(folder_ / "report.html", text);
+    publish(folder_.path(), {"run.json"});
+    EXPECT_EQ(fs::exists(folder_ / "report.html"), stays);
+  }
+}
+
+TEST(ResultFolder, NeedsAName) {
+  for (const char* name : {"/", ""})
+    EXPECT_THAT(error_of([&] { ResultFolder folder(name, "test"); }),
+                HasSubstr("name a folder for these results"));
+}
+
 TEST_F(ResultFolders, EarlierResultsStayUntilTheNewOnesAreComplete) {
   publish(folder_.path(), {"run.json", "fields.vtkhdf"});
   test::write_file(folder_ / "notes.txt", "mine");
