@@ -2,7 +2,7 @@
 """`slipfront run --state-dir`: runs that share the state before the event."""
 
 import pytest
-from common import require_done, run_json, sets
+from common import refusal, require_done, run_json, sets
 from hostile.trials import alone
 
 SHARED = ("--state-dir", "s")
