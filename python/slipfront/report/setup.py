@@ -95,6 +95,8 @@ def waves(run: Run) -> str:
     joint = below.get("generalised_rayleigh_speed_m_per_s")
     of_both = f"c<sub>GR</sub> = {joint:.0f} m/s" if is_number(joint) else "none, the bodies differ too much"
     of_base = told(below.get("wave_speeds"))
+    if of_base == of_plate:
+        return f"both bodies: {of_plate}"
     return f"plate: {of_plate}<br>base: {of_base}<br>generalised Rayleigh speed: {of_both}"
 
 
