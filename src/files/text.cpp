@@ -94,7 +94,6 @@ std::string one_line(std::string_view text) {
 
 std::string shortened(std::string_view text) {
   constexpr std::size_t most = 160;
-  if (text.empty()) return "\"\"";
   if (text.size() <= most) return one_line(text);
   // A character that is cut in two goes with the rest.
   std::size_t end = most;

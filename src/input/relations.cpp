@@ -70,7 +70,8 @@ void check_prestress(const Case& config, const Document& document) {
         "{} is 0; that holds the top edge still, which a ramp or {} = spontaneous needs to move; choose a "
         "speed "
         "greater than 0",
-        Key("loading.shear_speed_over_c_L"), kind);
+        Key("loading.shear_speed_over_c_L"), kind)
+        .about(method.name);
   }
   const Key t("prestress.t_Pa"), p("prestress.p_Pa");
   const bool uniform = document.find(t.name) && document.find(p.name);

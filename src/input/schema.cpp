@@ -291,7 +291,7 @@ std::optional<std::string> key_of_short_name(const std::string& key) {
   }
   if (guess) throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *guess);
   throw UserError("{}: unknown key {}; the command `slipfront keys` lists all", setting.place,
-                  files::shortened(key));
+                  key.empty() ? "\"\"" : files::shortened(key));
 }
 
 [[noreturn]] void throw_wrong_type(const Entry& entry, const Setting& setting, const Value& default_value) {

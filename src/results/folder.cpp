@@ -361,11 +361,14 @@ void ResultFolder::publish(bool adds) {
   const auto earlier = earlier_set(dir_);
   const auto results_are = fmt::format("; the results are in {}", unfinished().string());
   walk(
-      unfinished(), "", [&](const std::string& name) { require_of_set(earlier, dir_, name, results_are); },
+      unfinished(), "", [](const std::string&) {},
       [&](const std::string& name) {
         if (files::is_there(dir_ / name) && !files::is_folder(dir_ / name))
           throw UserError("{}: is no folder, where one is to go; move it away", (dir_ / name).string());
       });
+  walk(
+      unfinished(), "", [&](const std::string& name) { require_of_set(earlier, dir_, name, results_are); },
+      [](const std::string&) {});
   seal(unfinished(), adds ? files::read_checksums(dir_) : files::Checksums{});
   walk(
       unfinished(), "", [&](const std::string& name) { files::sync_file(unfinished() / name); },

@@ -245,6 +245,8 @@ TEST_F(ResultFolders, IsNotMadeInsideAnothersWork) {
 TEST_F(ResultFolders, LeavesTheTargetOfALinkAlone) {
   const test::TemporaryFolder elsewhere;
   test::write_file(elsewhere / "run.json", "precious");
+  publish(folder_.path(), {"run.json"});
+  ASSERT_TRUE(fs::remove(folder_ / "run.json"));
   fs::create_symlink(elsewhere / "run.json", folder_ / "run.json");
   publish(folder_.path(), {"run.json"});
   EXPECT_FALSE(fs::is_symlink(folder_ / "run.json"));
