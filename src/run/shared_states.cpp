@@ -25,9 +25,8 @@ SharedStates::SharedStates(std::filesystem::path dir) : dir_(files::resolved(std
   std::error_code error;
   std::filesystem::create_directory(dir_, error);  // another process may do so at the same time
   if (!files::is_folder(dir_) || ::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0)
-    throw UserError(
-        "folder of states {}: {}; choose another place", dir_.string(),
-        files::is_there(dir_) && !files::is_folder(dir_) ? "is a file" : "cannot be made or written");
+    throw UserError("folder of states {}: is no folder that can be written; choose another place",
+                    dir_.string());
 }
 
 std::filesystem::path SharedStates::file_of(const std::string& key) const {

@@ -117,7 +117,7 @@ def test_the_resolved_case_runs_again_and_a_stopped_run_goes_on(program, case, t
 
 
 def test_info_of_forces_is_of_the_tractions_that_they_give(program, case, tmp_path):
-    law = sets("friction.law=slip_weakening", "friction.d_c_m=1e-6", "friction.mu_k=0.9")
+    law = sets("friction.law=slip_weakening", "friction.d_c_m=1e-6", "friction.mu_s=1.3")
     told = re.search(r"strength excess S +\S+, (\S+), ", require_done(program("info", case, *law)).stdout)
     require_done(program("run", case, "-q", "-o", "out", *law))
     of_run = run_json(tmp_path / "out")["rupture"]["strength_excess_S"]["median"]

@@ -35,13 +35,13 @@ def test_fronts_of_an_experiment(onsets, tmp_path, capsys):
     out = tmp_path / "fronts.csv"
     assert main(["fronts", str(onsets), "-o", str(out), "--c-l-m-per-s", "2000"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    # Slopes of lines through 21 and 31 times right to 1 us are right to 1/14 and 1/20.67 of 1 us/mm.
-    low, high = (f"speed 1000 m/s, {interval} (0.50 c_L)" for interval in ("933.3 to 1077", "953.8 to 1051"))
+    # Slopes of lines through 21 and 31 times right to 0.5 us are right to 1/28 and 1/41.33 of 1 us/mm.
+    low, high = (f"speed 1000 m/s, {interval} (0.50 c_L)" for interval in ("965.5 to 1037", "976.4 to 1025"))
     assert lines == [
         f"front 0: x = 0.0400 to 0.0000 m, 0.0 to 40.0 us, {low}, ends: record_edge",
         f"front 1: x = 0.0400 to 0.1000 m, 0.0 to 60.0 us, {high}, ends: record_edge",
         "--l-star-m 0.002, --arrest-time-s 2e-05, --min-length-m 0.004; intervals of speeds: times right to "
-        "half of 2e-06 s",
+        "half of 1e-06 s",
     ]
     found = rows(out)
     speeds = ["speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s"]
