@@ -31,28 +31,16 @@ inline void require_possible(bool is_possible, const char* what) {
 }
 
 /// Writes to or reads from an archive (cereal's, whose vectors the archive's owner includes) a vector of
-/// known length. @throws StateError where one of another length is read, or of impossible values.
+/// its present length. @throws StateError where one of another length is read, or of impossible values.
 template <class Archive, class T>
-void archive_vector(Archive& archive, std::vector<T>& values, std::size_t length) {
+void archive_vector(Archive& archive, std::vector<T>& values) {
+  const auto length = values.size();
   archive(values);
   if (values.size() != length)
     throw StateError("the saved state has {} values, this case has {}: it belongs to another case",
                      values.size(), length);
   if constexpr (Archive::is_loading::value)
     require_possible(std::ranges::all_of(values, is_possible<T>), "numbers");
-}
-
-/// The same with its present length.
-template <class Archive, class T>
-void archive_vector(Archive& archive, std::vector<T>& values) {
-  archive_vector(archive, values, values.size());
-}
-
-/// A pair of such vectors, x and y.
-template <class Archive, class Field>
-void archive_field(Archive& archive, Field& field, std::size_t length) {
-  archive_vector(archive, field.x, length);
-  archive_vector(archive, field.y, length);
 }
 
 }  // namespace slipfront

@@ -23,7 +23,13 @@ namespace slipfront::interface {
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
 
-/// A law of the registry: its name in the case file, its parameters and its lists of numbers.
+/// A state variable of a law: a number at each node, remembered from one contact update to the next.
+struct LawState {
+  const char *name, *unit;
+  double initial;
+};
+
+/// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states.
 class FrictionLaw {
  public:
   static constexpr std::size_t max_parameters = 4;
@@ -44,9 +50,12 @@ class FrictionLaw {
         lists.emplace_back((law.*list.member).begin(), (law.*list.member).end());
       lists_ = std::make_shared<const Lists>(std::move(lists));
     }
+    if constexpr (requires { Law::states; }) states_ = Law::states;
   }
 
   std::string_view name() const { return name_; }
+  /// Those that the law's struct declares as the array `states`; arrays Interface::law_states are theirs.
+  std::span<const LawState> states() const { return states_; }
 
   /// The struct again; its lists are those of this law, which must outlive it.
   /// @pre it is this law's
@@ -79,6 +88,7 @@ class FrictionLaw {
   std::string_view name_;
   std::array<double, max_parameters> values_{};  ///< in the order of the law's parameters
   std::shared_ptr<const Lists> lists_;           ///< in the order of the law's lists; null where it has none
+  std::span<const LawState> states_;
   std::shared_ptr<const ArrayLaw> function_;
 };
 

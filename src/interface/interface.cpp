@@ -10,25 +10,11 @@
 
 namespace slipfront::interface {
 
-Interface::Interface(std::size_t n)
-    : initial_gap_m(n),
-      mass_per_length_kg_m2(n),
-      tangential_mass_ratio(n, 1.0),
-      intact(n, 1.0),
-      v_x_m_per_s(n),
-      v_y_m_per_s(n),
-      u_y_m(n),
-      slip_rate_m_per_s(n),
-      t_Pa(n),
-      p_Pa(n),
-      trial_traction_Pa(n),
-      strength_Pa(n),
-      slipping(n),
-      slip_m(n),
-      relaxed_Pa(n),
-      target_Pa(n),
-      acceleration_m_per_s2(n),
-      locked(n) {}
+Interface::Interface(std::size_t n, std::span<const LawState> states_of_law) {
+  for (const auto& field : interface_fields)
+    std::visit([&](auto array) { (this->*array).assign(n, field.initial); }, field.array);
+  for (const auto& state : states_of_law) law_states.emplace_back(n, state.initial);
+}
 
 namespace {
 
@@ -205,6 +191,8 @@ void start_contact(const ContactModel& model, Interface& s) {
       s.locked[i] = s.p_Pa[i] > 0;
     }
   });
+  const auto states = model.law.states();
+  for (std::size_t k = 0; k < s.law_states.size(); ++k) std::ranges::fill(s.law_states[k], states[k].initial);
 }
 
 bool update_contact(const ContactModel& model, double dt_s, Interface& state) {

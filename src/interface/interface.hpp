@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
-#include "base/state.hpp"
 #include "interface/friction.hpp"
 #include "interface/node_laws.hpp"
 #include "interface/regularisation.hpp"
@@ -64,23 +65,61 @@ struct Interface {
   std::vector<double> relaxed_Pa, target_Pa;
   std::vector<double> acceleration_m_per_s2;  ///< along x, of the last update; predictor-corrector only
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
-  bool begun = false;                ///< whether there was an update since start_contact
+  /// State variables of the friction law, see FrictionLaw::states.
+  std::vector<std::vector<double>> law_states;
+  bool begun = false;  ///< whether there was an update since start_contact
 
-  explicit Interface(std::size_t n);
+  explicit Interface(std::size_t n, std::span<const LawState> states_of_law = {});
   std::size_t size() const { return t_Pa.size(); }
-
-  /// All that changes.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    for (auto* values :
-         {&intact, &v_x_m_per_s, &v_y_m_per_s, &u_y_m, &slip_rate_m_per_s, &t_Pa, &p_Pa, &trial_traction_Pa,
-          &strength_Pa, &slip_m, &relaxed_Pa, &target_Pa, &acceleration_m_per_s2})
-      archive_vector(archive, *values);
-    archive_vector(archive, slipping);
-    archive_vector(archive, locked);
-    archive(begun);
-  }
 };
+
+/// Where the values of a field come from; halos and checkpoints follow from it.
+enum class FieldKind {
+  body,    ///< from the bodies
+  load,    ///< from the event's loads; a checkpoint is compared with them
+  trial,   ///< made anew in each update, and read by nobody between two of them
+  result,  ///< of the last update, read between two of them: in checkpoints
+  memory,  ///< from one update to the next: in halos and checkpoints
+};
+
+/// An array of Interface.
+struct InterfaceField {
+  const char *name, *unit;
+  FieldKind kind;
+  std::variant<std::vector<double> Interface::*, std::vector<std::uint8_t> Interface::*> array;
+  std::uint8_t initial = 0;
+};
+
+/// All arrays but those of the friction law. One that is added here is allocated, sent in halos, kept in
+/// checkpoints and restored.
+inline constexpr std::array<InterfaceField, 18> interface_fields = {{
+    {"initial_gap", "m", FieldKind::body, &Interface::initial_gap_m},
+    {"mass_per_length", "kg/m2", FieldKind::body, &Interface::mass_per_length_kg_m2},
+    {"tangential_mass_ratio", "1", FieldKind::body, &Interface::tangential_mass_ratio, 1},
+    {"intact", "1", FieldKind::load, &Interface::intact, 1},
+    {"v_x", "m/s", FieldKind::memory, &Interface::v_x_m_per_s},
+    {"v_y", "m/s", FieldKind::memory, &Interface::v_y_m_per_s},
+    {"u_y", "m", FieldKind::trial, &Interface::u_y_m},
+    {"slip_rate", "m/s", FieldKind::memory, &Interface::slip_rate_m_per_s},
+    {"t", "Pa", FieldKind::result, &Interface::t_Pa},
+    {"p", "Pa", FieldKind::result, &Interface::p_Pa},
+    {"trial_traction", "Pa", FieldKind::trial, &Interface::trial_traction_Pa},
+    {"strength", "Pa", FieldKind::trial, &Interface::strength_Pa},
+    {"slipping", "1", FieldKind::memory, &Interface::slipping},
+    {"slip", "m", FieldKind::memory, &Interface::slip_m},
+    {"relaxed", "Pa", FieldKind::memory, &Interface::relaxed_Pa},
+    {"target", "Pa", FieldKind::memory, &Interface::target_Pa},
+    {"acceleration", "m/s2", FieldKind::memory, &Interface::acceleration_m_per_s2},
+    {"locked", "1", FieldKind::memory, &Interface::locked},
+}};
+
+/// Calls f(kind, values) for each array, those of the friction law last.
+template <class State, class F>
+void for_each_field(State& state, F&& f) {
+  for (const auto& field : interface_fields)
+    std::visit([&](auto array) { f(field.kind, state.*array); }, field.array);
+  for (auto& values : state.law_states) f(FieldKind::memory, values);
+}
 
 /// Begins the memory of friction in a state of given p: no slip yet, strength mu(0) p, relaxed strength or
 /// pressure in equilibrium with it, nodes under pressure in contact. `intact` is taken as it is: a patch that

@@ -35,13 +35,6 @@ struct Trigger {
   double amount = 5;      ///< see TriggerForm
   double ramp_s = 5e-6;   ///< rises linearly from zero over this time
   double duration_s = std::numeric_limits<double>::infinity();  ///< taken away this long after its start
-
-  bool operator==(const Trigger&) const = default;
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(form, zone_m, amount, ramp_s, duration_s);
-  }
 };
 
 /// Time factor of the trigger, 0 to 1.

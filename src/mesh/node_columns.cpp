@@ -81,7 +81,8 @@ NodeColumns::NodeColumns(std::span<const Grid> blocks) : n_columns_(blocks.front
 }
 
 void NodeColumns::add_rows(std::span<const Grid> blocks, const Subset& held) {
-  const Subset columns = held.ranges().empty() ? Subset({{0, n_columns_}}) : held;
+  is_whole_ = held.ranges().empty();
+  const Subset columns = is_whole_ ? Subset({{0, n_columns_}}) : held;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     for (int j = 0; j <= blocks[k].rows; ++j) add_row(static_cast<int>(k), false, columns);
     if (k + 1 < blocks.size()) add_row(static_cast<int>(k), true, columns);
@@ -126,6 +127,7 @@ int NodeColumns::column_of(std::int64_t n) const {
 }
 
 std::int64_t NodeColumns::global_number(std::int64_t n) const {
+  if (is_whole_) return n;
   const auto& row = rows_[row_of(n)];
   return row.first_global + row.held.number_at(static_cast<int>(n - row.first));
 }

@@ -87,6 +87,7 @@ class NodeColumns {
   const Row& global_row_of(std::int64_t number) const;
 
   int n_columns_ = 0;
+  bool is_whole_ = false;  ///< holds all columns
   std::vector<Row> rows_;
 };
 

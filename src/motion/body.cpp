@@ -220,6 +220,35 @@ void Body::complete(const BodyStep& step) {
   add_terms(works_, step.works);
 }
 
+void Body::add_to(StateView& state) {
+  const auto b = state.bodies.size();
+  state.bodies.push_back({&motion_.columns, &motion_.is_own, &levels_.is_orphan});
+  const auto add = [&](std::size_t n, const mesh::Node* nodes, std::vector<StateArray> arrays) {
+    state.lists.push_back({StateKey::node, b, n, nodes, std::move(arrays)});
+  };
+  auto& [u_x, u_y] = motion_.u_m;
+  auto& [v_x, v_y] = motion_.v_m_per_s;
+  add(u_x.size(), nullptr, {u_x, u_y, v_x, v_y});
+  for (auto& level : levels_.level) {
+    // Block rows and general rows, each ascending.
+    const auto* rows = level.irregular.data();
+    const auto n_blocks = static_cast<std::size_t>(level.general.begin);
+    add(n_blocks, rows, {level.a_x, level.a_y});
+    add(level.irregular.size() - n_blocks, rows + n_blocks,
+        {level.a_x.data() + n_blocks, level.a_y.data() + n_blocks});
+    std::vector<StateArray> of_shared;
+    for (const auto& [field, is_in_halos] : shared_fields)
+      of_shared.insert(of_shared.end(), {(level.shared.*field).x, (level.shared.*field).y});
+    add(level.shared.node.size(), level.shared.node.data(), std::move(of_shared));
+    add(level.top_rows.size(), level.top_rows.node.data(), {level.top_force_N.x, level.top_force_N.y});
+    add(level.edge_nodes.size(), level.edge_nodes.data(),
+        {level.edge_kick_m_per_s.x, level.edge_kick_m_per_s.y});
+    level.damping_work.add_to(state);
+  }
+  interface_.landing.add_to(state);
+  for (const auto& term : record::energy_terms) state.sums.push_back(&(works_.*term.member));
+}
+
 record::Energies Body::energies() {
   record::Energies e = works_;
   e.kinetic = kinetic_energy_J_per_m();

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/state.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/interface_side.hpp"
 #include "motion/level.hpp"
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
+#include "motion/state_by_node.hpp"
 #include "record/energies.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -106,14 +106,12 @@ class Body {
   /// See Stepper::visit_columns. @param with_shared  also what levels keep of shared nodes
   template <class Visit>
   void visit_columns(solid::Span columns, solid::Span rows, bool with_shared, Visit&& visit);
-  /// After other values have been put into u_m, v_m_per_s.
+  /// Adds all that changes.
+  void add_to(StateView& state);
+  /// After other values have been put there.
   void update_after_restore() { to_single(motion_, single_); }
   /// Places along the interface of the nodes in some columns.
   solid::Span interface_nodes_in(solid::Span columns) const;
-
-  /// See Stepper::visit_state. @param b  number of the body
-  template <class Visitor>
-  void visit_state(Visitor& visitor, std::size_t b);
 
   /// Energies and works up to the last half (sub-)step.
   record::Energies energies();
@@ -128,15 +126,6 @@ class Body {
 
   /// Turns the motion round at the places `u_m`, see Stepper::reverse.
   void reverse(const solid::Field& u_m, double time_s);
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive_field(archive, motion_.u_m, motion_.u_m.size());
-    archive_field(archive, motion_.v_m_per_s, motion_.v_m_per_s.size());
-    for (auto& level : levels_.level) archive(level);
-    archive(interface_.landing, works_);
-    if constexpr (Archive::is_loading::value) to_single(motion_, single_);
-  }
 
  private:
   template <class F>
@@ -190,77 +179,12 @@ void Body::visit_columns(solid::Span columns, solid::Span rows, bool with_shared
       const auto begin = std::lower_bound(next, s.node.end(), nodes.first);
       const auto end = std::lower_bound(begin, s.node.end(), nodes.end());
       const auto at = begin - s.node.begin();
-      for (auto* field :
-           {&s.u_before_m, &s.impulse_m_per_s, &s.equilibrium_load_m_per_s2, &s.v_last_m_per_s}) {
-        visit(field->x.data() + at, static_cast<std::size_t>(end - begin));
-        visit(field->y.data() + at, static_cast<std::size_t>(end - begin));
-      }
+      for (const auto& [field, is_in_halos] : shared_fields)
+        for (auto* values : {&(s.*field).x, &(s.*field).y})
+          if (is_in_halos) visit(values->data() + at, static_cast<std::size_t>(end - begin));
       next = std::lower_bound(end, s.node.end(), motion_.columns.row(row).end());
     }
   }
-}
-
-template <class Visitor>
-void Body::visit_state(Visitor& visitor, std::size_t b) {
-  const auto& columns = motion_.columns;
-  const auto list_of_nodes = [&](std::size_t n, auto&& node_of, auto&& each) {
-    visitor.list(
-        StateKey::node, b, n, [&](std::size_t k) { return columns.global_number(node_of(k)); },
-        [&](std::size_t k) { return columns.column_of(node_of(k)); }, each);
-  };
-  auto& u = motion_.u_m;
-  auto& v = motion_.v_m_per_s;
-  list_of_nodes(
-      u.size(), [](std::size_t k) { return static_cast<mesh::Node>(k); },
-      [&](std::size_t k, auto&& f) {
-        f(u.x[k]);
-        f(u.y[k]);
-        f(v.x[k]);
-        f(v.y[k]);
-      });
-  for (auto& level : levels_.level) {
-    list_of_nodes(
-        level.irregular.size(), [&](std::size_t r) { return level.irregular[r]; },
-        [&](std::size_t r, auto&& f) {
-          f(level.a_x[r]);
-          f(level.a_y[r]);
-        });
-    auto& s = level.shared;
-    list_of_nodes(
-        s.node.size(), [&](std::size_t k) { return s.node[k]; },
-        [&](std::size_t k, auto&& f) {
-          for (auto* field : {&s.u_before_m, &s.impulse_m_per_s, &s.equilibrium_load_m_per_s2,
-                              &s.v_last_m_per_s, &s.a_m_per_s2, &s.v_mean_before_m_per_s}) {
-            f(field->x[k]);
-            f(field->y[k]);
-          }
-        });
-    list_of_nodes(
-        level.top_rows.node.size(), [&](std::size_t r) { return level.top_rows.node[r]; },
-        [&](std::size_t r, auto&& f) {
-          f(level.top_force_N[r].x);
-          f(level.top_force_N[r].y);
-        });
-    // Only the lowest block has edges with a stencil.
-    const auto width = static_cast<std::size_t>(columns.row(0).count);
-    const auto column_of = [&](std::size_t k) {
-      return columns.column_of(static_cast<mesh::Node>(k % width));
-    };
-    visitor.list(
-        StateKey::column, b, level.edge_kick_m_per_s.size() * width,
-        [&](std::size_t k) {
-          return static_cast<std::int64_t>(k / width) * columns.n_columns() + column_of(k);
-        },
-        column_of,
-        [&](std::size_t k, auto&& f) {
-          auto& kick = level.edge_kick_m_per_s[k / width];
-          f(kick[k % width]);
-          f(kick[width + k % width]);
-        });
-    level.damping_work.visit_state(visitor);
-  }
-  interface_.landing.visit_state(visitor);
-  for (const auto& term : record::energy_terms) visitor.sum(works_.*term.member);
 }
 
 }  // namespace slipfront::motion

@@ -20,7 +20,7 @@ double dashpot_work(const Dashpot& dashpot, double mass_kg, double mean_x, doubl
 Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBody> bodies)
     : bodies_(std::move(bodies)),
       contact_(contact),
-      interface_(bodies_.front().side->nodes.size()),
+      interface_(bodies_.front().side->nodes.size(), contact.law.states()),
       tributary_m_(bodies_.front().side->tributary_m),
       v_x_before_(interface_.size()),
       v_y_before_(interface_.size()),
@@ -104,32 +104,39 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
   }
   std::ranges::fill(interface_.intact, 1.0);
   start_contact(contact_, interface_);
-  if (loads.trigger_force_N_per_m.empty()) loads.trigger_force_N_per_m.assign(interface_.size(), 0.0);
-  set_trigger(loads.trigger, std::move(loads.trigger_force_N_per_m));
+  // A patch that is weakened now loses its strength at the rate of the regularisation.
+  set_loads(std::move(loads));
+}
+
+void Coupling::set_loads(Loads loads) {
+  trigger_ = loads.trigger;
+  trigger_force_N_ = std::move(loads.trigger_force_N_per_m);
+  trigger_force_N_.resize(interface_.size(), 0.0);
+  trigger_nodes_.clear();
+  for (std::size_t i = 0; i < trigger_force_N_.size(); ++i)
+    if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
   prestress_t_Pa_.clear();
   prestress_p_Pa_.clear();
   if (!loads.prestress_t_Pa.empty())
     set_prestress(std::move(loads.prestress_t_Pa), std::move(loads.prestress_p_Pa));
-  // A patch that is weakened now loses its strength at the rate of the regularisation.
   SLIPFRONT_ASSERT(loads.intact.empty() || loads.intact.size() == interface_.size(), "intact of other nodes");
-  if (!loads.intact.empty()) interface_.intact = std::move(loads.intact);
+  interface_.intact = std::move(loads.intact);
+  interface_.intact.resize(interface_.size(), 1.0);
 }
 
-bool Coupling::has_loads(const Loads& loads) const {
-  const auto at_all_nodes = [&](const std::vector<double>& values, double otherwise) {
-    return values.empty() ? std::vector<double>(interface_.size(), otherwise) : values;
-  };
-  return prestress_t_Pa_ == loads.prestress_t_Pa && prestress_p_Pa_ == loads.prestress_p_Pa &&
-         trigger_ == loads.trigger && trigger_force_N_ == at_all_nodes(loads.trigger_force_N_per_m, 0) &&
-         interface_.intact == at_all_nodes(loads.intact, 1);
-}
-
-void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
-  trigger_ = trigger;
-  trigger_force_N_ = std::move(force_N_per_m);
-  trigger_nodes_.clear();
-  for (std::size_t i = 0; i < trigger_force_N_.size(); ++i)
-    if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
+void Coupling::add_to(StateView& state) {
+  std::vector<StateArray> arrays;
+  interface::for_each_field(interface_, [&](interface::FieldKind kind, auto& values) {
+    if (kind == interface::FieldKind::result || kind == interface::FieldKind::memory)
+      arrays.push_back(values);
+  });
+  for (const auto* load : {&interface_.intact, &trigger_force_N_, &prestress_t_Pa_, &prestress_p_Pa_})
+    if (!load->empty()) arrays.push_back(std::as_const(*load));
+  arrays.push_back(start_u_x_m_);
+  for (auto& side : sides_) arrays.insert(arrays.end(), {side.v_x, side.v_y});
+  state.lists.push_back(
+      {StateKey::place, 0, interface_.size(), bodies_.front().side->nodes.data(), std::move(arrays)});
+  state.flags.push_back(&interface_.begun);
 }
 
 void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "motion/state_by_node.hpp"
 #include "solid/kernels.hpp"
 
 namespace slipfront::motion {
@@ -55,16 +56,10 @@ class DampingWork {
   /// @param u_K_u, v_K_u  of the present displacements and velocities
   double of_last_push(const ImpulseProducts& since_last, double u_K_u, double v_K_u) const;
 
-  /// See Stepper::visit_state.
-  template <class Visitor>
-  void visit_state(Visitor& visitor) {
-    visitor.flag(begun_);
-    for (auto* value : {&last_.u_K_u, &last_.v_K_v, &last_.after_K_w}) visitor.sum(*value);
-  }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(begun_, last_.u_K_u, last_.v_K_v, last_.after_K_w);
+  /// Adds all that changes.
+  void add_to(StateView& state) {
+    state.flags.push_back(&begun_);
+    state.sums.insert(state.sums.end(), {&last_.u_K_u, &last_.v_K_v, &last_.after_K_w});
   }
 
  private:

@@ -45,6 +45,13 @@ std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
   return some;
 }
 
+void put_loads(const Loads& loads, const mesh::Subset& interface_nodes, MessageBuffer& to) {
+  for (const auto* values :
+       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
+    to.put(cut(*values, interface_nodes));
+  to.put(loads.trigger);
+}
+
 /// Some columns of a field over a whole body, or none of an empty one.
 void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, const solid::Field& field,
                  MessageBuffer& to) {
@@ -205,10 +212,7 @@ void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m
     buffer.put(static_cast<std::uint8_t>(is_elsewhere && e.distributed_u_m->partition->base_is_relative));
     buffer.put(cut(e.tractions.t_s_Pa, interface_nodes)).put(cut(e.tractions.p_s_Pa, interface_nodes));
     buffer.put(cut(e.contact, interface_nodes)).put(top_speed_m_per_s);
-    for (const auto* values :
-         {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
-      buffer.put(cut(*values, interface_nodes));
-    buffer.put(loads.trigger);
+    put_loads(loads, interface_nodes, buffer);
     return buffer;
   });
   has_finders_ = false;
@@ -467,31 +471,34 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
   return values;
 }
 
-void DistributedStepper::keep(const std::function<void(const StateByNode& chunk)>& take) const {
+void DistributedStepper::keep(const std::function<void(const StateByNode& chunk)>& take) {
+  int number = 0;
   ask(SubdomainCommand::keep, nothing, [&](MessageBuffer& answer) {
     auto chunk = StateByNode::take(answer);
     answer = {};
     chunk.step = step_;
+    chunk.number = number++;
+    chunk.n_chunks = partition_.n_subdomains();
     take(chunk);
   });
 }
 
-void DistributedStepper::restore(int n_chunks, const std::function<StateByNode()>& next) {
-  for (int k = 0; k < n_chunks; ++k) {
+void DistributedStepper::restore(const Loads& loads, const std::function<StateByNode()>& next) {
+  for (bool is_last = false; !is_last;) {
     const auto chunk = next();
     ask(SubdomainCommand::restore, [&](int subdomain) {
       // As many subdomains as kept them go on with their own sums; of another number the first one has them
       // all.
-      const bool has_sums = n_chunks == partition_.n_subdomains() ? subdomain == k : subdomain == 0;
+      const bool has_sums =
+          chunk.n_chunks == partition_.n_subdomains() ? subdomain == chunk.number : subdomain == 0;
+      const auto& interface_nodes = all_interface_nodes_[static_cast<std::size_t>(subdomain)];
       MessageBuffer buffer;
-      buffer.put(static_cast<std::uint8_t>(k + 1 == n_chunks));
-      chunk
-          .in(partition_.all(subdomain), all_interface_nodes_[static_cast<std::size_t>(subdomain)], columns_,
-              has_sums)
-          .put(buffer);
+      put_loads(loads, interface_nodes, buffer);
+      chunk.in(partition_.all(subdomain), interface_nodes, columns_, has_sums).put(buffer);
       return buffer;
     });
     step_ = chunk.step;
+    is_last = chunk.is_last();
   }
   has_finders_ = false;
 }

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "motion/state_by_node.hpp"
 #include "motion/subdomain.hpp"
 #include "motion/time_stepper.hpp"
 
@@ -62,10 +61,9 @@ class DistributedStepper final : public TimeStepper {
   /// What each subdomain has cost since this process began or went on with the event.
   std::vector<SubdomainCost> costs() const;
 
-  /// Visits the state of each subdomain in turn.
-  void keep(const std::function<void(const StateByNode& chunk)>& take) const;
-  /// Restores such states, of any number of subdomains, one after the other.
-  void restore(int n_chunks, const std::function<StateByNode()>& next);
+  /// A chunk of each subdomain.
+  void keep(const std::function<void(const StateByNode& chunk)>& take) override;
+  void restore(const Loads& loads, const std::function<StateByNode()>& next) override;
 
  private:
   /// Sends each subdomain a command with its values, and receives the answers.

@@ -334,7 +334,6 @@ void RampRun::require_possible() {
                                             tilted_.below_u_m.size()) &&
                        common.u_m.size() == tilted_.u_m.size()),
       "an equilibrium");
-  slipfront::require_possible(stepper_.has_loads({}), "loads");
   const bool is_single =
       std::ranges::any_of(stepper_.bodies(), [](const Body& body) { return body.has_single_precision(); });
   slipfront::require_possible(

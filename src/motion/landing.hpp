@@ -5,6 +5,7 @@
 
 #include "mesh/mesh.hpp"
 #include "motion/damping_work.hpp"
+#include "motion/state_by_node.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
 
@@ -30,17 +31,8 @@ class Landing {
   }
   void clear() { K_v_ = K_u_ = 0; }
 
-  /// See Stepper::visit_state.
-  template <class Visitor>
-  void visit_state(Visitor& visitor) {
-    visitor.sum(K_v_);
-    visitor.sum(K_u_);
-  }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(K_v_, K_u_);
-  }
+  /// Adds all that changes.
+  void add_to(StateView& state) { state.sums.insert(state.sums.end(), {&K_v_, &K_u_}); }
 
  private:
   std::vector<mesh::Node> interface_nodes_;

@@ -114,7 +114,8 @@ void compute_irregular(StepLevel& level, const Band& band, const BodyMotion& bod
   if (!band.has_top) return;
   const solid::Span all{0, static_cast<int>(level.top_rows.size())};
   solid::for_each_row_product(level.top_rows, all, w, [&](std::size_t r, double x, double y) {
-    level.top_force_N[r] = {x, y};
+    level.top_force_N.x[r] = x;
+    level.top_force_N.y[r] = y;
     const auto n = level.top_rows.node[r];
     if (body.is_owned(n)) works.top_work += level.step_s * x * body.v_m_per_s.x[n];
   });
@@ -175,9 +176,9 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
     const auto above = solid::scaled(body.op.edge, -dt * scale);
     const auto stencil = squares == solid::Squares::above ? above : solid::mirrored(above);
     const auto inner = row_of(w, squares == solid::Squares::above ? j + 1 : j - 1);
-    auto& kick = level.edge_kick_m_per_s[edge++];
-    double* kick_x = kick.data();
-    double* kick_y = kick_x + stride;
+    const auto of_edge = static_cast<std::ptrdiff_t>(edge++) * stride;
+    double* kick_x = level.edge_kick_m_per_s.x.data() + of_edge;
+    double* kick_y = level.edge_kick_m_per_s.y.data() + of_edge;
     for (const auto span : spans) {
       const auto [u_d, v_d] =
           solid::kick_edge_row(stencil, span, row_of(w, j), inner, {u_x, u_y}, {v_x, v_y}, kick_x, kick_y);
@@ -214,8 +215,8 @@ void add_irregular_products(const StepLevel& level, const Band& band, const Body
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
     if (!body.is_owned(n)) continue;
-    products.u_K_w += u.x[n] * level.top_force_N[r].x + u.y[n] * level.top_force_N[r].y;
-    products.v_K_w += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
+    products.u_K_w += u.x[n] * level.top_force_N.x[r] + u.y[n] * level.top_force_N.y[r];
+    products.v_K_w += v.x[n] * level.top_force_N.x[r] + v.y[n] * level.top_force_N.y[r];
   }
 }
 
@@ -504,8 +505,8 @@ void end_impulse(StepLevel& level, BodyMotion& body) {
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto r = s.irregular_row[k];
     const auto column = s.node[k] % stride;
-    const double x = r < 0 ? level.edge_kick_m_per_s[0][column] : -level.step_s * level.a_x[r];
-    const double y = r < 0 ? level.edge_kick_m_per_s[0][stride + column] : -level.step_s * level.a_y[r];
+    const double x = r < 0 ? level.edge_kick_m_per_s.x[column] : -level.step_s * level.a_x[r];
+    const double y = r < 0 ? level.edge_kick_m_per_s.y[column] : -level.step_s * level.a_y[r];
     s.a_m_per_s2.x[k] = -x / level.step_s;
     s.a_m_per_s2.y[k] = -y / level.step_s;
     s.impulse_m_per_s.x[k] = x - level.step_s * s.equilibrium_load_m_per_s2.x[k];
@@ -607,8 +608,9 @@ double next_velocity_product(const StepLevel& level, const Band& band, const Bod
     const auto& row = level.stiffness.stencil[k];
     if (!solid::is_horizontal_edge(row)) continue;
     const auto o = row_start(body, row.row);
-    const double* kick_x = level.edge_kick_m_per_s[edge++].data();
-    const solid::ConstRow kick{kick_x, kick_x + body.op.grid.stride()};
+    const auto of_edge = static_cast<std::ptrdiff_t>(edge++) * body.op.grid.stride();
+    const auto& kicks = level.edge_kick_m_per_s;
+    const solid::ConstRow kick{kicks.x.data() + of_edge, kicks.y.data() + of_edge};
     for (const auto span : row.spans)
       if (body.is_owned(row.row, span))
         sum -= solid::row_product(span, &body.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
@@ -617,7 +619,7 @@ double next_velocity_product(const StepLevel& level, const Band& band, const Bod
     for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
       const auto n = level.top_rows.node[r];
       if (!body.is_owned(n)) continue;
-      sum += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
+      sum += v.x[n] * level.top_force_N.x[r] + v.y[n] * level.top_force_N.y[r];
     }
   return sum;
 }

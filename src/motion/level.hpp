@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
 
-#include "base/state.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/damping_work.hpp"
@@ -69,15 +69,20 @@ struct Shared {
   // For the energies: velocities after the finer level's last step; K w/m at the level's last impulse, and
   // the mean velocity over the level's step before it.
   solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
-
-  /// All that changes.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    for (auto* field : {&u_before_m, &impulse_m_per_s, &equilibrium_load_m_per_s2, &v_last_m_per_s,
-                        &a_m_per_s2, &v_mean_before_m_per_s})
-      archive_field(archive, *field, node.size());
-  }
 };
+
+/// A field of Shared.
+struct SharedField {
+  solid::Field Shared::*field;
+  bool is_in_halos;  ///< or serves the energies of own nodes alone
+};
+/// All of them: allocated, and kept in checkpoints.
+inline constexpr std::array<SharedField, 6> shared_fields = {{{&Shared::u_before_m, true},
+                                                              {&Shared::impulse_m_per_s, true},
+                                                              {&Shared::equilibrium_load_m_per_s2, true},
+                                                              {&Shared::v_last_m_per_s, true},
+                                                              {&Shared::a_m_per_s2, false},
+                                                              {&Shared::v_mean_before_m_per_s, false}}};
 
 /// Consecutive rows of nodes that are kicked and moved together: the unit in which threads::Wavefront takes a
 /// step, so that the rows of a band stay in cache while the next steps follow. That is possible since a band
@@ -121,21 +126,11 @@ struct StepLevel {
   std::vector<double> a_x, a_y;       ///< [irregular rows]
   std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
   Shared shared;
-  solid::BlockRows top_rows;  ///< K of the level's cells, N/m
-  /// Kicks of the stencil's edge rows, x then y, in their order. [2 columns]
-  std::vector<std::vector<double>> edge_kick_m_per_s;
-  std::vector<solid::Pair> top_force_N;  ///< K w of top_rows at the last impulse
+  solid::BlockRows top_rows;           ///< K of the level's cells, N/m
+  std::vector<mesh::Node> edge_nodes;  ///< of the stencil's edge rows, all in the lowest block
+  solid::Field edge_kick_m_per_s;      ///< [edge_nodes]
+  solid::Field top_force_N;            ///< K w of top_rows at the last impulse
   DampingWork damping_work;
-
-  /// All that changes.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive_vector(archive, a_x);
-    archive_vector(archive, a_y);
-    for (auto& kick : edge_kick_m_per_s) archive_vector(archive, kick);
-    archive_vector(archive, top_force_N);
-    archive(shared, damping_work);
-  }
 };
 
 /// A body's cells, divided into levels.

@@ -285,9 +285,7 @@ void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared, const B
     s.irregular_row.push_back(irregular_row[n]);
   }
   s.runs = runs_of(s.node, body);
-  for (auto* field : {&s.u_before_m, &s.impulse_m_per_s, &s.equilibrium_load_m_per_s2, &s.v_last_m_per_s,
-                      &s.a_m_per_s2, &s.v_mean_before_m_per_s})
-    *field = solid::Field(s.node.size());
+  for (const auto& [field, is_in_halos] : shared_fields) s.*field = solid::Field(s.node.size());
 }
 
 /// Nodes of the loaded edge that move with the level, and the rows of all in its cells.
@@ -300,7 +298,7 @@ void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, co
     if (in_cells[n]) top.push_back(n);
   }
   level.top_rows = solid::assemble_rows(mesh, material, top, {}, in_level);
-  level.top_force_N.resize(top.size());
+  level.top_force_N = solid::Field(top.size());
 }
 
 /// Neighbouring general rows that are treated alike.
@@ -425,8 +423,9 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
     }
     set_shared_nodes(level, shared, body);
     for (const auto& row : level.stiffness.stencil)
-      if (solid::is_horizontal_edge(row))
-        level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
+      for (int i = 0; solid::is_horizontal_edge(row) && i < mesh.grid.stride(); ++i)
+        level.edge_nodes.push_back(static_cast<mesh::Node>(op.rows[row.row].first) + i);
+    level.edge_kick_m_per_s = solid::Field(level.edge_nodes.size());
     for (const auto n : level.irregular) {
       level.takes_impulse.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);

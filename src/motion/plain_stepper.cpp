@@ -52,8 +52,11 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
     }
     for (std::size_t a = 0; a < n; ++a)
       if (levels.of_node[a] == l && body.mass_kg[a] > 0) level.nodes.push_back(static_cast<mesh::Node>(a));
+    level.u_before_m = level.v_seen_m_per_s = level.force_N = level.damping_force_N = solid::Field(n);
     body.levels.push_back(std::move(level));
   }
+  body.u_m = body.v_m_per_s = body.load_m_per_s2 = body.impulse_m_per_s = body.v_last_m_per_s =
+      solid::Field(n);
   body.dashpots.resize(n);
   for (const auto& absorbing : mesh.absorbing) {
     const auto a = absorbing.node;
@@ -174,6 +177,26 @@ void PlainStepper::start(const statics::Equilibrium& equilibrium, double top_spe
   }
   coupling_.start(equilibrium, std::move(loads));
   step_ = 0;
+}
+
+StateView PlainStepper::state() {
+  StateView state;
+  for (auto& body : bodies_) {
+    std::vector<solid::Field*> fields = {&body.u_m, &body.v_m_per_s, &body.load_m_per_s2,
+                                         &body.impulse_m_per_s, &body.v_last_m_per_s};
+    for (auto& level : body.levels)
+      fields.insert(fields.end(),
+                    {&level.u_before_m, &level.v_seen_m_per_s, &level.force_N, &level.damping_force_N});
+    std::vector<StateArray> arrays;
+    for (auto* field : fields) arrays.insert(arrays.end(), {field->x, field->y});
+    state.lists.push_back(
+        {StateKey::node, state.bodies.size(), body.mass_kg.size(), nullptr, std::move(arrays)});
+    state.bodies.emplace_back();
+    body.side.landing.add_to(state);
+    for (const auto& term : record::energy_terms) state.sums.push_back(&(body.works.*term.member));
+  }
+  coupling_.add_to(state);
+  return state;
 }
 
 std::int64_t PlainStepper::advance(Recorder& recorder, std::int64_t max_steps,

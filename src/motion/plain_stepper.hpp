@@ -28,8 +28,6 @@ class PlainStepper : public TimeStepper {
   /// See Stepper::start.
   void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {});
 
-  bool has_loads(const Loads& loads) const { return coupling_.has_loads(loads); }
-
   double stable_step_s() const override { return stable_step_s_; }
   double step_s() const override { return step_s_; }
   double lowest_step_s() const override { return lowest_step_s_; }
@@ -56,23 +54,17 @@ class PlainStepper : public TimeStepper {
   std::size_t snapshot_chunk_bytes() const override;
   std::vector<double> snapshot_chunk(int k) const override;
 
-  /// All that changes, between two calls of advance; see Stepper.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    for (auto& body : bodies_) {
-      const auto n = body.mass_kg.size();
-      for (auto* field :
-           {&body.u_m, &body.v_m_per_s, &body.load_m_per_s2, &body.impulse_m_per_s, &body.v_last_m_per_s})
-        archive_field(archive, *field, n);
-      for (auto& level : body.levels)
-        for (auto* field : {&level.u_before_m, &level.v_seen_m_per_s, &level.force_N, &level.damping_force_N})
-          archive_field(archive, *field, n);
-      archive(body.side.landing, body.works);
-    }
-    archive(coupling_, step_);
+  void keep(const std::function<void(const StateByNode& chunk)>& take) override {
+    keep_in_chunks(state(), step_, n_nodes(), take);
+  }
+  void restore(const Loads& loads, const std::function<StateByNode()>& next) override {
+    coupling_.set_loads(loads);
+    step_ = restore_chunks(state(), next);
   }
 
  private:
+  StateView state();
+
   double stable_step_s_ = 0, lowest_step_s_ = 0, step_s_ = 0;
   std::vector<PlainBody> bodies_;
   int substeps_ = 1;  ///< in a step

@@ -41,16 +41,6 @@ struct BodySource {
   const mesh::Mesh* corners = nullptr;
 };
 
-/// Key of a list's entries in StateByNode: nodes, by their number; places along the interface;
-/// columns of nodes.
-enum class StateKey : std::uint8_t { node, place, column };
-
-/// Place of a subdomain's stepper in the whole bodies.
-struct SubdomainPlace {
-  solid::Span own = solid::all_columns;  ///< columns that it accounts for
-  mesh::Subset interface_nodes;          ///< places of its nodes along the interface
-};
-
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.
 struct Probe {
   std::size_t body = 0;                ///< 0 above, 1 below

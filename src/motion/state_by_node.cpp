@@ -2,232 +2,210 @@
 #include "motion/state_by_node.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/state.hpp"
 
 namespace slipfront::motion {
 
 namespace {
 
-[[noreturn]] void throw_of_others() {
-  throw StateError("the saved state belongs to other bodies (number of nodes differs)");
+/// Most nodes of a chunk on one rank.
+constexpr std::int64_t nodes_of_state_chunk = 1 << 19;
+
+void require_of_these(bool is_of_these) {
+  if (!is_of_these) throw StateError("the saved state belongs to other bodies (number of nodes differs)");
 }
 
-/// Those of all subdomains together.
-std::vector<double> total(const std::vector<std::vector<double>>& sums) {
-  std::vector<double> all;
-  for (const auto& of_subdomain : sums) {
-    if (all.empty()) all.assign(of_subdomain.size(), 0.0);
-    if (of_subdomain.size() != all.size()) throw_of_others();
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] += of_subdomain[k];
+/// The entry with a key, n where there is none. @param near  tried first
+std::size_t find(const StateView& state, const StateView::List& list, std::int64_t key, std::size_t near) {
+  if (near < list.n && state.key(list, near) == key) return near;
+  std::size_t begin = 0, end = list.n;
+  while (begin < end) {
+    const auto middle = begin + (end - begin) / 2;
+    if (state.key(list, middle) < key)
+      begin = middle + 1;
+    else
+      end = middle;
   }
-  return all;
+  return begin < list.n && state.key(list, begin) == key ? begin : list.n;
 }
-
-/// Writes lists of what a stepper shows of its state.
-class Keeper {
- public:
-  Keeper(StateByNode& kept, const SubdomainPlace& place) : kept_(kept), place_(place) {}
-
-  /// @param key_of(k)    see StateByNode::Values, in the stepper's own count
-  /// @param column_of(k) in the stepper's own count
-  /// @param each(k, f)   calls f with all values of entry k
-  template <class Key, class Column, class Each>
-  void list(StateByNode::By by, std::size_t body, std::size_t n, Key&& key_of, Column&& column_of,
-            Each&& each) {
-    StateByNode::Values list{by, static_cast<std::uint8_t>(body), 0, {}, {}};
-    list.key.reserve(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const int column = column_of(k);
-      if (column < place_.own.begin || column >= place_.own.end) continue;
-      list.key.push_back(key_of(k));
-      each(k, [&](auto& value) { list.value.push_back(static_cast<double>(value)); });
-      if (list.key.size() == 1) list.value.reserve(n * list.value.size());
-    }
-    if (!list.key.empty()) list.width = static_cast<std::uint32_t>(list.value.size() / list.key.size());
-    kept_.values.push_back(std::move(list));
-  }
-  void sum(double& value) { kept_.sums.front().push_back(value); }
-  void flag(bool& value) { kept_.flags.push_back(value ? 1 : 0); }
-  void trigger(interface::Trigger& value) { kept_.trigger = value; }
-
- private:
-  StateByNode& kept_;
-  const SubdomainPlace& place_;
-};
-
-/// Reads them.
-class Restorer {
- public:
-  Restorer(const StateByNode& kept, const SubdomainPlace& place)
-      : kept_(kept), sums_(total(kept.sums)), place_(place) {}
-
-  template <class Key, class Column, class Each>
-  void list(StateByNode::By by, std::size_t body, std::size_t n, Key&& key_of, Column&& column_of,
-            Each&& each) {
-    if (next_list_ == kept_.values.size()) throw_of_others();
-    const auto& list = kept_.values[next_list_++];
-    if (list.by != by || list.body != body || list.value.size() != list.key.size() * list.width)
-      throw_of_others();
-    auto near = list.key.begin();
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto key = key_of(k);
-      // Most entries follow each other.
-      if (near == list.key.end() || *near != key) near = std::ranges::lower_bound(list.key, key);
-      if (near == list.key.end() || *near != key) {
-        // At a subdomain's edge nodes have block rows that have none in the whole.
-        const int column = column_of(k);
-        if (column >= place_.own.begin && column < place_.own.end) throw_of_others();
-        continue;
-      }
-      auto from = list.value.begin() + (near - list.key.begin()) * static_cast<std::ptrdiff_t>(list.width);
-      const auto end = from + static_cast<std::ptrdiff_t>(list.width);
-      each(k, [&]<class T>(T& value) {
-        if (from == end) throw_of_others();
-        value = static_cast<T>(*from++);
-      });
-      if (from != end) throw_of_others();
-      ++near;
-    }
-  }
-  void sum(double& value) {
-    if (next_sum_ == sums_.size()) throw_of_others();
-    value = sums_[next_sum_++];
-  }
-  void flag(bool& value) {
-    if (next_flag_ == kept_.flags.size()) throw_of_others();
-    value = kept_.flags[next_flag_++] != 0;
-  }
-  void trigger(interface::Trigger& value) { value = kept_.trigger; }
-  void require_end() const {
-    if (next_list_ != kept_.values.size() || next_sum_ != sums_.size() || next_flag_ != kept_.flags.size())
-      throw_of_others();
-  }
-
- private:
-  const StateByNode& kept_;
-  std::vector<double> sums_;
-  const SubdomainPlace& place_;
-  std::size_t next_list_ = 0, next_sum_ = 0, next_flag_ = 0;
-};
 
 }  // namespace
 
-void StateByNode::require_consistent() const {
-  for (const auto& list : values)
-    if (list.value.size() != list.key.size() * list.width) throw_of_others();
+void StateArray::set(std::size_t k, double value) const {
+  if (expected_ != nullptr) {
+    slipfront::require_possible(value == expected_[k], "loads");
+  } else if (flags_ != nullptr) {
+    slipfront::require_possible(value == 0 || value == 1, "numbers");
+    flags_[k] = value != 0;
+  } else {
+    numbers_[k] = value;
+  }
 }
 
-void StateByNode::add(StateByNode subdomain, int n_subdomains) {
-  if (values.empty()) {
-    *this = std::move(subdomain);
-    // Subdomains are nearly equal: no list is copied to make room.
-    const auto make_room = [&](auto& list) { list.reserve((list.size() + 1) * (n_subdomains + 1)); };
-    for (auto& list : values) {
-      make_room(list.key);
-      make_room(list.value);
-    }
-    return;
-  }
-  if (subdomain.values.size() != values.size()) throw_of_others();
-  for (std::size_t l = 0; l < values.size(); ++l) {
-    auto& to = values[l];
-    const auto& from = subdomain.values[l];
-    to.width = std::max(to.width, from.width);
-    to.key.insert(to.key.end(), from.key.begin(), from.key.end());
-    to.value.insert(to.value.end(), from.value.begin(), from.value.end());
-  }
-  sums.insert(sums.end(), subdomain.sums.begin(), subdomain.sums.end());
+std::int64_t StateView::key(const List& list, std::size_t k) const {
+  if (list.by == StateKey::place) return interface_nodes.number_at(static_cast<int>(k));
+  const auto* columns = bodies[list.body].columns;
+  return columns != nullptr ? columns->global_number(list.node(k)) : list.node(k);
 }
 
-void StateByNode::sort() {
-  for (auto& list : values) {
-    std::vector<std::size_t> order(list.key.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t k) { return list.key[k]; });
-    Values sorted{list.by, list.body, list.width, {}, {}};
-    sorted.key.reserve(list.key.size());
-    sorted.value.reserve(list.value.size());
-    for (const auto k : order) {
-      sorted.key.push_back(list.key[k]);
-      const auto from = list.value.begin() + static_cast<std::ptrdiff_t>(k * list.width);
-      sorted.value.insert(sorted.value.end(), from, from + static_cast<std::ptrdiff_t>(list.width));
-    }
-    list = std::move(sorted);
+bool StateView::is_own(const List& list, std::size_t k) const {
+  const auto* is_own = bodies[list.body].is_own;
+  return is_own == nullptr || is_own->empty() || (*is_own)[list.node(k)];
+}
+
+void StateByNode::require_possible() const {
+  require_of_these(number >= 0 && number < n_chunks);
+  auto left = values.size();
+  for (const auto& run : runs) {
+    require_of_these(run.width > 0 && run.count <= left / run.width && run.key >= 0 &&
+                     run.key <= std::numeric_limits<std::int64_t>::max() / 2);
+    left -= run.count * run.width;
   }
+  require_of_these(left == 0);
+  slipfront::require_possible(std::ranges::all_of(values, is_possible<double>) &&
+                                  std::ranges::all_of(sums, is_possible<double>) &&
+                                  std::ranges::all_of(flags, is_possible<std::uint8_t>),
+                              "numbers");
 }
 
 StateByNode StateByNode::in(const mesh::Subset& columns, const mesh::Subset& interface_nodes,
                             std::span<const mesh::NodeColumns> bodies, bool has_sums) const {
-  auto its_sums = total(sums);
-  if (!has_sums) std::ranges::fill(its_sums, 0.0);
-  StateByNode of_subdomain{step, {}, {std::move(its_sums)}, flags, trigger};
-  for (const auto& list : values) {
-    if (list.body >= bodies.size()) throw_of_others();
-    const auto& body = bodies[list.body];
-    const auto& subset = list.by == By::place ? interface_nodes : columns;
-    const auto number_of = [&](std::int64_t key) {
-      if (list.by == By::place) return static_cast<int>(key);
-      return list.by == By::node ? body.global_column_of(key) : static_cast<int>(key % body.n_columns());
-    };
-    Values some{list.by, list.body, list.width, {}, {}};
-    for (std::size_t k = 0; k < list.key.size(); ++k) {
-      if (!subset.has(number_of(list.key[k]))) continue;
-      some.key.push_back(list.key[k]);
-      const auto from = list.value.begin() + static_cast<std::ptrdiff_t>(k * list.width);
-      some.value.insert(some.value.end(), from, from + static_cast<std::ptrdiff_t>(list.width));
-    }
-    of_subdomain.values.push_back(std::move(some));
+  StateByNode some{number, n_chunks, step, {}, {}, has_sums ? sums : std::vector<double>(), flags};
+  for_each_entry([&](const Run& run, std::int64_t key, std::span<const double> of_entry) {
+    require_of_these(run.body < bodies.size() && key < bodies[run.body].n_nodes());
+    if (run.by == StateKey::place ? !interface_nodes.has(static_cast<int>(key))
+                                  : !columns.has(bodies[run.body].global_column_of(key)))
+      return;
+    some.add_entry(run, key);
+    some.values.insert(some.values.end(), of_entry.begin(), of_entry.end());
+  });
+  return some;
+}
+
+void StateByNode::add_entry(const Run& like, std::int64_t key) {
+  if (!runs.empty() && runs.back().list == like.list &&
+      runs.back().key + static_cast<std::int64_t>(runs.back().count) == key) {
+    ++runs.back().count;
+    return;
   }
-  return of_subdomain;
+  runs.push_back(like);
+  runs.back().key = key;
+  runs.back().count = 1;
 }
 
 void StateByNode::put(MessageBuffer& to) const {
-  std::size_t bytes = 4096 + 1024 * sums.size();  // more than what is not in the lists
-  for (const auto& list : values) bytes += 64 + (list.key.size() + list.value.size()) * sizeof(double);
-  to.reserve(bytes);
-  to.put(step).put(static_cast<std::uint64_t>(values.size()));
-  for (const auto& list : values)
-    to.put(list.by).put(list.body).put(list.width).put(list.key).put(list.value);
-  to.put(static_cast<std::uint64_t>(sums.size()));
-  for (const auto& of_subdomain : sums) to.put(of_subdomain);
-  to.put(flags).put(trigger);
+  to.reserve(4096 + runs.size() * sizeof(Run) + (values.size() + sums.size()) * sizeof(double));
+  to.put(number).put(n_chunks).put(step).put(runs).put(values).put(sums).put(flags);
 }
 
 StateByNode StateByNode::take(MessageBuffer& from) {
-  StateByNode kept;
-  kept.step = from.take<std::int64_t>();
-  kept.values.resize(from.take<std::uint64_t>());
-  for (auto& list : kept.values) {
-    list.by = from.take<By>();
-    list.body = from.take<std::uint8_t>();
-    list.width = from.take<std::uint32_t>();
-    list.key = from.take_all<std::int64_t>();
-    list.value = from.take_all<double>();
+  StateByNode chunk;
+  chunk.number = from.take<std::int32_t>();
+  chunk.n_chunks = from.take<std::int32_t>();
+  chunk.step = from.take<std::int64_t>();
+  chunk.runs = from.take_all<Run>();
+  chunk.values = from.take_all<double>();
+  chunk.sums = from.take_all<double>();
+  chunk.flags = from.take_all<std::uint8_t>();
+  return chunk;
+}
+
+StateByNode keep(const StateView& state, std::int64_t step, int number, int n_chunks) {
+  StateByNode chunk{number, n_chunks, step, {}, {}, {}, {}};
+  const auto begin = [&](const StateView::List& list, int of) {
+    return list.n * static_cast<std::size_t>(of) / static_cast<std::size_t>(n_chunks);
+  };
+  std::size_t n_values = 0;
+  for (const auto& list : state.lists)
+    n_values += (begin(list, number + 1) - begin(list, number)) * list.arrays.size();
+  chunk.values.reserve(n_values);
+  for (std::size_t l = 0; l < state.lists.size(); ++l) {
+    const auto& list = state.lists[l];
+    const StateByNode::Run run{.list = static_cast<std::uint32_t>(l),
+                               .width = static_cast<std::uint16_t>(list.arrays.size()),
+                               .body = static_cast<std::uint8_t>(list.body),
+                               .by = list.by};
+    for (auto k = begin(list, number); k < begin(list, number + 1); ++k) {
+      if (!state.is_own(list, k)) continue;
+      chunk.add_entry(run, state.key(list, k));
+      for (const auto& array : list.arrays) chunk.values.push_back(array.get(k));
+    }
   }
-  kept.sums.resize(from.take<std::uint64_t>());
-  for (auto& of_subdomain : kept.sums) of_subdomain = from.take_all<double>();
-  kept.flags = from.take_all<std::uint8_t>();
-  kept.trigger = from.take<interface::Trigger>();
-  return kept;
+  if (number == 0)
+    for (const auto* sum : state.sums) chunk.sums.push_back(*sum);
+  for (const auto* flag : state.flags) chunk.flags.push_back(*flag ? 1 : 0);
+  return chunk;
 }
 
-StateByNode keep(Stepper& stepper, const SubdomainPlace& place) {
-  StateByNode kept;
-  kept.step = stepper.step();
-  kept.sums.resize(1);
-  Keeper keeper(kept, place);
-  stepper.visit_state(keeper, place);
-  return kept;
+void keep_in_chunks(const StateView& state, std::int64_t step, std::int64_t n_nodes,
+                    const std::function<void(const StateByNode& chunk)>& take) {
+  const auto n_chunks = static_cast<int>(1 + n_nodes / nodes_of_state_chunk);
+  for (int number = 0; number < n_chunks; ++number) take(keep(state, step, number, n_chunks));
 }
 
-void restore(const StateByNode& kept, Stepper& stepper, const SubdomainPlace& place) {
-  Restorer restorer(kept, place);
-  stepper.visit_state(restorer, place);
-  restorer.require_end();
-  stepper.update_after_restore(kept.step);
+StateRestorer::StateRestorer(StateView state) : state_(std::move(state)) {
+  for (const auto& list : state_.lists) {
+    is_restored_.emplace_back(list.n);
+    for (std::size_t k = 1; k < list.n; ++k)
+      SLIPFRONT_ASSERT(state_.key(list, k - 1) < state_.key(list, k), "keys ascend");
+  }
+}
+
+void StateRestorer::add(const StateByNode& chunk) {
+  if (n_added_ == 0) {
+    n_chunks_ = chunk.n_chunks;
+    step_ = chunk.step;
+  }
+  require_of_these(chunk.number == n_added_++ && chunk.n_chunks == n_chunks_ && chunk.step == step_ &&
+                   chunk.flags.size() == state_.flags.size() &&
+                   (chunk.sums.empty() || chunk.sums.size() == state_.sums.size()));
+  std::size_t near = 0;
+  chunk.for_each_entry([&](const StateByNode::Run& run, std::int64_t key, std::span<const double> values) {
+    require_of_these(run.list < state_.lists.size());
+    const auto& list = state_.lists[run.list];
+    require_of_these(run.by == list.by && run.body == list.body && run.width == list.arrays.size());
+    const auto k = find(state_, list, key, near);
+    // At a subdomain's edge nodes of the whole may have rows of another kind.
+    const auto* is_own = state_.bodies[list.body].is_own;
+    require_of_these(k < list.n || (is_own != nullptr && !is_own->empty()));
+    if (k == list.n) return;
+    for (std::size_t a = 0; a < values.size(); ++a) list.arrays[a].set(k, values[a]);
+    is_restored_[run.list][k] = true;
+    near = k + 1;
+  });
+  if (sums_.empty()) {
+    sums_ = chunk.sums;
+  } else {
+    for (std::size_t k = 0; k < chunk.sums.size(); ++k) sums_[k] += chunk.sums[k];
+  }
+  for (std::size_t k = 0; k < chunk.flags.size(); ++k) *state_.flags[k] = chunk.flags[k] != 0;
+}
+
+std::int64_t StateRestorer::finish() {
+  for (std::size_t l = 0; l < state_.lists.size(); ++l) {
+    const auto& list = state_.lists[l];
+    const auto* is_orphan = state_.bodies[list.body].is_orphan;
+    for (std::size_t k = 0; k < list.n; ++k)
+      require_of_these(is_restored_[l][k] || !state_.is_own(list, k) ||
+                       (is_orphan != nullptr && (*is_orphan)[list.node(k)]));
+  }
+  sums_.resize(state_.sums.size(), 0.0);
+  for (std::size_t k = 0; k < sums_.size(); ++k) *state_.sums[k] = sums_[k];
+  return step_;
+}
+
+std::int64_t restore_chunks(StateView state, const std::function<StateByNode()>& next) {
+  StateRestorer restorer(std::move(state));
+  for (bool is_last = false; !is_last;) {
+    const auto chunk = next();
+    restorer.add(chunk);
+    is_last = chunk.is_last();
+  }
+  return restorer.finish();
 }
 
 }  // namespace slipfront::motion

@@ -145,6 +145,14 @@ void Stepper::advance_band(std::int64_t step, std::size_t band) {
   }
 }
 
+StateView Stepper::state(const mesh::Subset& interface_nodes) {
+  StateView state;
+  state.interface_nodes = interface_nodes;
+  for (auto& body : bodies_) body.add_to(state);
+  coupling_.add_to(state);
+  return state;
+}
+
 void Stepper::set_probes(std::vector<Probe> probes) {
   probes_ = std::move(probes);
   probed_nodes_.clear();

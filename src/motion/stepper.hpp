@@ -126,8 +126,6 @@ class Stepper : public TimeStepper {
   solid::Field mean_velocity_m_per_s() const { return bodies_.front().mean_velocity_m_per_s(); }
   const interface::Interface& interface_state() const { return coupling_.state(); }
 
-  bool has_loads(const Loads& loads) const { return coupling_.has_loads(loads); }
-
   SlipRates slip_rates() const { return coupling_.slip_rates(); }
   double largest_acceleration_m_per_s2() const { return coupling_.largest_acceleration_m_per_s2(); }
   double energy_J_per_m() const;  ///< strain and kinetic, each of its own instant
@@ -173,25 +171,19 @@ class Stepper : public TimeStepper {
     for (auto& body : bodies_) body.sync_to_double();
   }
 
-  /// Shows all that changes between two calls of advance to a visitor, see StateByNode.
-  template <class Visitor>
-  void visit_state(Visitor& visitor, const SubdomainPlace& place) {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].visit_state(visitor, b);
-    coupling_.visit_state(visitor, bodies_.front().columns(), place);
+  void keep(const std::function<void(const StateByNode& chunk)>& take) override {
+    keep_in_chunks(state(), step_, n_nodes(), take);
   }
-  /// After other values have been put there.
+  void restore(const Loads& loads, const std::function<StateByNode()>& next) override {
+    set_loads(loads);
+    update_after_restore(restore_chunks(state(), next));
+  }
+  /// The same in parts. @param interface_nodes  of a subdomain, their places along the whole interface
+  StateView state(const mesh::Subset& interface_nodes = {});
+  void set_loads(const Loads& loads) { coupling_.set_loads(loads); }
   void update_after_restore(std::int64_t step) {
     for (auto& body : bodies_) body.update_after_restore();
-    coupling_.update_after_restore();
     step_ = step;
-  }
-
-  /// All that changes, between two calls of advance. A stepper of the same bodies and stepping that has read
-  /// it goes on as this one would, to the last bit; start need not have been called.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    for (auto& body : bodies_) archive(body);
-    archive(coupling_, step_);
   }
 
  private:

@@ -21,6 +21,15 @@ solid::Field take_field(MessageBuffer& given) {
   return field;
 }
 
+Loads take_loads(MessageBuffer& given) {
+  Loads loads;
+  for (auto* values :
+       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
+    *values = given.take_all<double>();
+  loads.trigger = given.take<interface::Trigger>();
+  return loads;
+}
+
 /// Logs the contact updates of several steps for the report.
 class Log final : public UpdateObserver {
  public:
@@ -138,21 +147,11 @@ void Subdomain::execute(SubdomainCommand command, MessageBuffer& given, MessageB
       answer.put(stepper_->probed_u_m()).put(stepper_->probed_v_m_per_s());
       break;
     case SubdomainCommand::keep:
-      keep(*stepper_, place_).put(answer);
+      keep(stepper_->state(place_.interface_nodes), stepper_->step()).put(answer);
       break;
-    case SubdomainCommand::restore: {
-      const bool is_last = given.take<std::uint8_t>() != 0;
-      kept_.add(StateByNode::take(given), 1);
-      if (!is_last) break;
-      given = {};
-      kept_.sort();
-      restore(std::exchange(kept_, {}), *stepper_, place_);
-      return_freed_memory();
-      halo_->begin_anew();
-      finder_.reset();
-      begin_counting();
+    case SubdomainCommand::restore:
+      restore(given);
       break;
-    }
     case SubdomainCommand::network:
     case SubdomainCommand::statics:
     case SubdomainCommand::fields:
@@ -196,16 +195,29 @@ void Subdomain::start(MessageBuffer& given) {
   e.tractions.p_s_Pa = given.take_all<double>();
   e.contact = given.take_all<statics::Contact>();
   const auto top_speed_m_per_s = given.take<double>();
-  Loads loads;
-  for (auto* values :
-       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
-    *values = given.take_all<double>();
-  loads.trigger = given.take<interface::Trigger>();
-  stepper_->start(e, top_speed_m_per_s, std::move(loads));
+  stepper_->start(e, top_speed_m_per_s, take_loads(given));
   finder_.reset();
   e = {};
   return_freed_memory();
   halo_->renew();
+  begin_counting();
+}
+
+void Subdomain::restore(MessageBuffer& given) {
+  const auto loads = take_loads(given);
+  const auto chunk = StateByNode::take(given);
+  given = {};
+  if (!restorer_) {
+    stepper_->set_loads(loads);
+    restorer_.emplace(stepper_->state(place_.interface_nodes));
+  }
+  restorer_->add(chunk);
+  if (!chunk.is_last()) return;
+  stepper_->update_after_restore(restorer_->finish());
+  restorer_.reset();
+  return_freed_memory();
+  halo_->begin_anew();
+  finder_.reset();
   begin_counting();
 }
 

@@ -36,7 +36,7 @@ enum class SubdomainCommand : int {
   snapshot,    ///< own columns of a chunk of it
   probed,      ///< displacements and velocities at the probes
   keep,        ///< the state, for a checkpoint
-  restore,     ///< a chunk of a state that was kept, and whether it is the last one
+  restore,     ///< the loads, and a chunk of a state that was kept
   release,     ///< the subdomain is needed no more
   end,         ///< and neither is the process
 };
@@ -104,6 +104,12 @@ struct SnapshotChunk {
   int first_row = 0, end_row = 0;
 };
 
+/// Place of a subdomain in the whole bodies.
+struct SubdomainPlace {
+  solid::Span own;               ///< columns that it accounts for
+  mesh::Subset interface_nodes;  ///< places of its nodes along the interface
+};
+
 /// One rank's subdomain of an event's bodies. Every rank has one; DistributedStepper gives all of them the
 /// same commands.
 class Subdomain {
@@ -124,6 +130,7 @@ class Subdomain {
  private:
   void place(MessageBuffer& given);
   void start(MessageBuffer& given);
+  void restore(MessageBuffer& given);
   void advance(MessageBuffer& given, MessageBuffer& answer);
   void make_finder(MessageBuffer& given);
   void begin_counting();
@@ -136,7 +143,7 @@ class Subdomain {
   std::unique_ptr<Halo> halo_;
   std::optional<SlipFinder> finder_;
   TractionLog log_;
-  StateByNode kept_;  ///< chunks of it, until the last one has come
+  std::optional<StateRestorer> restorer_;  ///< until the last chunk has come
   statics::DistributedFields* displacements_;
   /// u_m, u_per_shear of the bodies as unknowns, see statics::Subdomain; empty unless they have been placed.
   std::array<std::array<solid::Field, 2>, 2> placed_;

@@ -8,11 +8,14 @@
 
 #include "motion/probes.hpp"
 #include "motion/recorder.hpp"
+#include "motion/state_by_node.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
 #include "solid/operator.hpp"
 
 namespace slipfront::motion {
+
+struct Loads;
 
 /// How fast the nodes of an interface slip.
 struct SlipRates {
@@ -103,6 +106,15 @@ class TimeStepper {
   virtual std::vector<double> snapshot_chunk(int k) const = 0;
   /// All of it.
   Snapshot snapshot() const;
+
+  /// Shows all that changes between two calls of advance, in chunks, so that no rank holds all of it.
+  virtual void keep(const std::function<void(const StateByNode& chunk)>& take) = 0;
+  /// Restores such chunks of any number of ranks, in their order; start need not have been called. A stepper
+  /// of the same bodies and stepping then goes on as that one would, to the last bit; by another number of
+  /// ranks but for the order of summation.
+  /// @param loads  with which the motion began
+  /// @throws StateError where the state is of other bodies or loads
+  virtual void restore(const Loads& loads, const std::function<StateByNode()>& next) = 0;
 
  protected:
   TimeStepper() = default;

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Begins every checkpoint. The number goes up when what follows changes.
-const std::string magic = "slipfront checkpoint 5";
+const std::string magic = "slipfront checkpoint 6";
 
 constexpr std::size_t n_kept = 2;
 constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";
@@ -90,66 +90,16 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
 }
 
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper) {
-  const auto* parted = dynamic_cast<const motion::DistributedStepper*>(&stepper);
-  archive(parted != nullptr ? parted->partition().n_subdomains() : 0);
-  if (parted != nullptr)
-    parted->keep([&](const motion::StateByNode& chunk) { archive(chunk); });
-  else if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper))
-    archive(*plain);
-  else
-    archive(dynamic_cast<motion::Stepper&>(stepper));
+  stepper.keep([&](const motion::StateByNode& chunk) { archive(chunk); });
 }
 
-namespace {
-
-/// The whole bodies of a stepper. Of a plate that repeats the last column has no cells, and nothing of it is
-/// kept by several processes.
-motion::SubdomainPlace whole_of(const motion::Stepper& stepper) {
-  const auto& plate = stepper.bodies().front();
-  const auto& columns = plate.columns();
-  const int n = columns.n_columns();
-  bool has_cells = false;
-  for (int r = 0; r < columns.n_rows(); ++r) {
-    const auto last = columns.nodes(r, {n - 1, n});
-    has_cells = has_cells || (last.count > 0 && !plate.levels().is_orphan[last.first]);
-  }
-  return {.own = {0, has_cells ? n : n - 1}, .interface_nodes = {}};
-}
-
-}  // namespace
-
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads,
-                 const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
-  int n_chunks = 0;
-  archive(n_chunks);
-  archive.require(static_cast<std::uint64_t>(n_chunks));
-  auto* parted = dynamic_cast<motion::DistributedStepper*>(&stepper);
-  const auto read_whole = [&](auto& by_one) {
-    archive(by_one);
-    require_possible(by_one.has_loads(loads), "loads");
-  };
-  if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper)) return read_whole(*plain);
-  if (parted == nullptr && n_chunks == 0) return read_whole(dynamic_cast<motion::Stepper&>(stepper));
-  const auto next = [&] {
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads) {
+  stepper.restore(loads, [&] {
     motion::StateByNode chunk;
     archive(chunk);
-    chunk.require_consistent();
+    chunk.require_possible();
     return chunk;
-  };
-  if (parted != nullptr && n_chunks > 0) return parted->restore(n_chunks, next);
-  if (parted != nullptr) {
-    auto by_one = make_whole();
-    read_whole(*by_one);
-    auto kept = motion::keep(*by_one, whole_of(*by_one));
-    by_one.reset();
-    return parted->restore(1, [&] { return std::move(kept); });
-  }
-  auto& by_one = dynamic_cast<motion::Stepper&>(stepper);
-  motion::StateByNode kept;
-  for (int k = 0; k < n_chunks; ++k) kept.add(next(), n_chunks);
-  kept.sort();
-  motion::restore(kept, by_one, whole_of(by_one));
-  require_possible(by_one.has_loads(loads), "loads");
+  });
 }
 
 void Checkpoints::keep(const CheckpointHead& head,

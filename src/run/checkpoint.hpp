@@ -36,14 +36,12 @@ struct CheckpointHead {
 InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
                                 const Processes* processes = nullptr);
 
-/// The motion in an event, as it is kept.
+/// The motion of a ramp or an event, see TimeStepper::keep.
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper);
-/// Whatever the number of processes that kept it, and of those that go on.
-/// @param loads       that the event began with
-/// @param make_whole  makes a stepper of one process of the same bodies
-/// @throws UserError where it is of another case
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads,
-                 const std::function<std::unique_ptr<motion::Stepper>()>& make_whole);
+/// Whatever the number of ranks that kept it, and of those that go on.
+/// @param loads  with which it began
+/// @throws StateError where it is of another case
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads);
 
 /// The checkpoints in a folder: the last two are kept, numbered as they come.
 class Checkpoints {

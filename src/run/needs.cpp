@@ -57,7 +57,7 @@ constexpr double in_relief = 1600;
 // Bytes on disk of a node. Raw rows and fields lie there until the results are made of them.
 constexpr double of_snapshot_mesh = 65;      ///< place, cell
 constexpr double raw_and_written = 32 + 48;  ///< u and v, raw; the same with z
-constexpr double in_checkpoint = 36;         ///< u and what moves it, 32; 40 with numbers
+constexpr double in_checkpoint = 33;         ///< u and what moves it, 32
 constexpr double checkpoints = 3;            ///< two, and one that is written
 constexpr double in_text = 20;               ///< of a number
 

@@ -83,8 +83,7 @@ class Session {
   double kept_time_s_ = 0, report_interval_s_ = min_report_interval_s;
 
   InitialState initial_;
-  motion::TimeStepper* stepper_ = nullptr;   ///< of the ramp or of the event
-  motion::Stepper* ramp_stepper_ = nullptr;  ///< while the ramp goes
+  motion::TimeStepper* stepper_ = nullptr;  ///< of the ramp or of the event
   motion::RampRun* ramp_ = nullptr;
   std::unique_ptr<motion::TimeStepper> event_stepper_;
   std::optional<motion::EventRun> event_;
@@ -114,7 +113,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
     } else {
       initial_ = initial_state(kept.get());
       ramp_ = nullptr;
-      stepper_ = ramp_stepper_ = nullptr;
+      stepper_ = nullptr;
       if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
       begin_event(nullptr);
     }
@@ -165,10 +164,13 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
 
 void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
-    read_rest(*kept, [&](auto& rest) { rest(stepper, ramp); });
+    read_rest(*kept, [&](auto& rest) {
+      read_motion(rest, stepper, {});
+      rest(ramp);
+    });
   }
   began_ = true;
-  stepper_ = ramp_stepper_ = &stepper;
+  stepper_ = &stepper;
   ramp_ = &ramp;
   kept_time_s_ = stepper.time_s();
 }
@@ -178,13 +180,9 @@ void Session::begin_event(Checkpoints::Checkpoint* kept) {
     results::ResultStream::Extents extents;
     read_rest(*kept, [&](auto& rest) {
       initial_ = read_initial_state(rest, config_, options_.processes);
-      const auto make_whole = [&] {
-        const auto meshes = check(config_);
-        return new_stepper(config_, meshes.plate, meshes.base, execution_);
-      };
       const auto loads = loads_of_event(config_, initial_);
       event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
-      read_motion(rest, *event_stepper_, loads, make_whole);
+      read_motion(rest, *event_stepper_, loads);
       event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
       rest(*event_, extents);
     });
@@ -230,13 +228,12 @@ void Session::keep() {
   // The streams first: a checkpoint must not count on rows that are not there yet.
   auto extents = stream_ ? stream_->keep() : results::ResultStream::Extents{};
   checkpoints_.keep(head, [&](results::OutputArchive& archive) {
-    if (head.in_event) {
-      archive(initial_);
-      write_motion(archive, *stepper_);
+    if (head.in_event) archive(initial_);
+    write_motion(archive, *stepper_);
+    if (head.in_event)
       archive(*event_, extents);
-    } else {
-      archive(*ramp_stepper_, *ramp_);
-    }
+    else
+      archive(*ramp_);
   });
   kept_ = Clock::now();
   kept_time_s_ = stepper_->time_s();

@@ -77,10 +77,6 @@ class BlockRow {
 /// A vector of the plane.
 struct Pair {
   double x = 0, y = 0;
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(x, y);
-  }
 };
 
 /// Calls f(row, x, y) with the components of the row's product with w(node), for each of the rows listed.

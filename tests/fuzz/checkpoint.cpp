@@ -76,7 +76,10 @@ std::string checkpoint_of(const input::Case& config) {
     motion::RampRun* ramp = nullptr;
     const auto keep = [&](std::int64_t step, std::int64_t total) {
       if (stepper == nullptr) return stop(step, total);
-      checkpoints.keep(head, [&](results::OutputArchive& archive) { archive(*stepper, *ramp); });
+      checkpoints.keep(head, [&](results::OutputArchive& archive) {
+        run::write_motion(archive, *stepper);
+        archive(*ramp);
+      });
       return false;
     };
     const auto begins = [&](motion::Stepper& its_stepper, motion::RampRun& run) {
@@ -113,8 +116,7 @@ void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
     auto initial = run::read_initial_state(kept.rest, config);
     const auto loads = run::loads_of_event(config, initial);
     const auto stepper = run::make_stepper(config, initial);
-    run::read_motion(kept.rest, *stepper, loads,
-                     [&] { return run::new_stepper(config, initial.mesh, initial.base); });
+    run::read_motion(kept.rest, *stepper, loads);
     auto event = run::begin_event(config, initial, *stepper);
     results::ResultStream::Extents extents;
     kept.rest(event, extents);
@@ -122,7 +124,8 @@ void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
     event.run(stop);
   } else {
     run::make_initial_state(config, stop, {}, [&](motion::Stepper& stepper, motion::RampRun& ramp) {
-      kept.rest(stepper, ramp);
+      run::read_motion(kept.rest, stepper, {});
+      kept.rest(ramp);
       kept.rest.close();
     });
   }

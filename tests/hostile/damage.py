@@ -128,7 +128,7 @@ def damages(dice, other):
     yield "sealed bytes behind the checkpoints", both(lambda d: sealed(d[:-SUM_DIGITS] + b"x")), {2}
     yield "sealed halves of checkpoints", both(lambda d: sealed(d[: len(d) // 2])), {2}
     yield "another program's checkpoints", relabelled(b", build ", b", built "), {2}
-    yield "another form of checkpoints", relabelled(b"checkpoint 2", b"checkpoint 9"), {0}
+    yield "another form of checkpoints", relabelled(b"slipfront checkpoint ", b"slipfront checkpoint 9"), {0}
     yield "no checkpoint", lambda u, s, c: [path.unlink() for path in c], {0}
     yield "a checkpoint of another case", from_other, {2}
     yield "the state of another case", all_from_other, {2}

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "interface/friction/registry.hpp"
 #include "one_node.hpp"
@@ -30,15 +32,17 @@ void expect_same_bits(const Interface& a, const Interface& b, std::size_t b_begi
 void expect_same_values(const Interface& a, const Interface& b) {
   ASSERT_EQ(a.slipping, b.slipping);
   ASSERT_EQ(a.locked, b.locked);
-  for (const auto values : test::written) {
-    double largest = 0;
-    for (const double value : a.*values) largest = std::max(largest, std::isnan(value) ? 0 : std::abs(value));
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double value = (a.*values)[i], other = (b.*values)[i];
-      ASSERT_TRUE(std::isnan(value) ? std::isnan(other) : std::abs(value - other) <= 4e-15 * largest)
+  std::vector<double> largest(results_at(a, 0).size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < largest.size(); ++k)
+      if (const double value = results_at(a, i)[k]; !std::isnan(value))
+        largest[k] = std::max(largest[k], std::abs(value));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < largest.size(); ++k) {
+      const double value = results_at(a, i)[k], other = results_at(b, i)[k];
+      ASSERT_TRUE(std::isnan(value) ? std::isnan(other) : std::abs(value - other) <= 4e-15 * largest[k])
           << "node " << i << ": " << value << ", " << other;
     }
-  }
 }
 
 /// The update as it would be written for one node at a time.
@@ -101,6 +105,25 @@ Interface nodes(std::size_t n, const ContactModel& model) {
   return s;
 }
 
+TEST(InterfaceFields, AreAllArraysThatNodesHave) {
+  constexpr std::array<LawState, 2> states = {{{"theta", "s", 0.5}, {"age", "s", 2}}};
+  Interface s(3, states);
+  std::set<const void*> arrays;
+  for_each_field(s, [&](FieldKind, const auto& values) {
+    EXPECT_EQ(values.size(), 3U);
+    arrays.insert(values.data());
+  });
+  EXPECT_EQ(arrays.size(), interface_fields.size() + states.size());
+  EXPECT_EQ(s.law_states, (std::vector<std::vector<double>>{{0.5, 0.5, 0.5}, {2, 2, 2}}));
+  // An array that the table lacks would make the struct larger.
+  struct Expected {
+    std::vector<double> fields[interface_fields.size()];
+    decltype(Interface::law_states) of_law;
+    bool begun;
+  };
+  EXPECT_EQ(sizeof(Interface), sizeof(Expected));
+}
+
 TEST(NodeUpdate, OfLanesIsThatOfDoubles) {
   for_each_model([](const ContactModel& model) {
     auto s = nodes(203, model);
@@ -134,13 +157,9 @@ TEST(NodeUpdate, DoesNotDependOnThePlaceInTheArray) {
     update_contact(model, dt, whole);
     for (std::size_t begin = 1; begin < n; ++begin) {
       auto part = before;
-      const auto cut = [&](auto& values) {
+      for_each_field(part, [&](FieldKind, auto& values) {
         values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
-      };
-      for (const auto values : test::fixed) cut(part.*values);
-      for (const auto values : test::written) cut(part.*values);
-      cut(part.slipping);
-      cut(part.locked);
+      });
       update_contact(model, dt, part);
       ASSERT_NO_FATAL_FAILURE(expect_same_bits(part, whole, begin));
     }

@@ -77,20 +77,12 @@ double strength_under_way(Coefficient mu, double last_rate, double t_stop_Pa, do
   return strength;
 }
 
-/// What an update only reads, and what it writes beside the flags.
-inline constexpr std::vector<double> Interface::*fixed[] = {
-    &Interface::initial_gap_m, &Interface::mass_per_length_kg_m2, &Interface::tangential_mass_ratio,
-    &Interface::intact};
-inline constexpr std::vector<double> Interface::*written[] = {
-    &Interface::v_x_m_per_s,       &Interface::v_y_m_per_s, &Interface::u_y_m,
-    &Interface::slip_rate_m_per_s, &Interface::t_Pa,        &Interface::p_Pa,
-    &Interface::trial_traction_Pa, &Interface::strength_Pa, &Interface::slip_m,
-    &Interface::relaxed_Pa,        &Interface::target_Pa,   &Interface::acceleration_m_per_s2};
-
 /// All that an update writes of a node.
 inline std::vector<double> results_at(const Interface& s, std::size_t i) {
-  std::vector<double> all{double(s.slipping[i]), double(s.locked[i])};
-  for (const auto values : written) all.push_back((s.*values)[i]);
+  std::vector<double> all;
+  for_each_field(s, [&](FieldKind kind, const auto& values) {
+    if (kind != FieldKind::body && kind != FieldKind::load) all.push_back(values[i]);
+  });
   return all;
 }
 

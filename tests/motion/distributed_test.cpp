@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "interface/friction/slip_weakening.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/distributed_stepper.hpp"
 #include "motion/event.hpp"
@@ -264,16 +266,31 @@ TEST(Subdomains, AreWrongNoFartherThanTheColumnsOfAStep) {
   }
 }
 
-std::vector<StateByNode> pieces_of(const DistributedStepper& stepper) {
-  std::vector<StateByNode> pieces;
-  stepper.keep([&](const StateByNode& piece) { pieces.push_back(piece); });
-  return pieces;
+std::vector<StateByNode> chunks_of(TimeStepper& stepper) {
+  std::vector<StateByNode> chunks;
+  stepper.keep([&](const StateByNode& chunk) { chunks.push_back(chunk); });
+  return chunks;
 }
 
-void restore_pieces(DistributedStepper& stepper, const std::vector<StateByNode>& pieces) {
-  auto next = pieces.begin();
-  stepper.restore(static_cast<int>(pieces.size()), [&] { return *next++; });
+/// The same of one rank, in so many chunks.
+std::vector<StateByNode> chunks_of(Stepper& stepper, int n_chunks) {
+  std::vector<StateByNode> chunks;
+  for (int k = 0; k < n_chunks; ++k) chunks.push_back(keep(stepper.state(), stepper.step(), k, n_chunks));
+  return chunks;
 }
+
+void restore(TimeStepper& stepper, const Loads& loads, const std::vector<StateByNode>& chunks) {
+  auto next = chunks.begin();
+  stepper.restore(loads, [&] {
+    next->require_possible();
+    return *next++;
+  });
+}
+
+/// A law with a state variable.
+struct WithState : interface::SlipWeakening {
+  static constexpr std::array<interface::LawState, 1> states = {{{"theta", "s", 7.5}}};
+};
 
 TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
   Problem even, of_two, of_graded = graded(), of_two_graded = graded(), repeating = graded();
@@ -288,7 +305,8 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
     problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
     const auto one = run_by_one(problem, run_steps);
     Team two(2, problem), three(3, problem);
-    Journey journey(two.begin());
+    const auto begin = two.begin();
+    Journey journey(begin);
     // Probes' velocities begin anew with each stepper.
     const auto compare = [&] {
       journey.outcome.probes = one.probes;
@@ -296,18 +314,12 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
     };
     const std::int64_t first = 49, second = 47;
     take_steps(journey, two.stepper(), first);
-    restore_pieces(three.stepper(), pieces_of(two.stepper()));
+    restore(three.stepper(), begin.loads, chunks_of(two.stepper()));
     take_steps(journey, three.stepper(), second);
     const Bodies bodies(problem);
     Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
-    // The last column of a plate that repeats has no cells.
-    const int n_columns = mesh::NodeColumns(bodies.above).n_columns() - (bodies.above.period_m > 0 ? 1 : 0);
-    const SubdomainPlace whole{.own = {0, n_columns}, .interface_nodes = {}};
-    StateByNode kept;
-    for (auto& piece : pieces_of(three.stepper())) kept.add(std::move(piece), 3);
-    kept.sort();
-    restore(kept, by_one, whole);
-    restore_pieces(two.stepper(), {keep(by_one, whole)});
+    restore(by_one, begin.loads, chunks_of(three.stepper()));
+    restore(two.stepper(), begin.loads, chunks_of(by_one, 4));
     auto by_two = journey;
     take_steps(journey, by_one, run_steps - first - second);
     compare();
@@ -317,14 +329,99 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
   }
 }
 
-TEST(Subdomains, DoNotGoOnWithOtherBodies) {
+TEST(Subdomains, HaveTheStateVariablesOfTheFrictionLaw) {
+  Problem problem;
+  const auto n_in_halo_of = [&] {
+    const Bodies bodies(problem);
+    Stepper stepper(bodies.sources(), problem.contact, problem.time, {});
+    std::size_t n = 0;
+    stepper.visit_columns({0, 1}, [&](const auto*, std::size_t count) { n += count; });
+    return n;
+  };
+  problem.contact.law = interface::SlipWeakening {};
+  const auto n_without = n_in_halo_of();
+  problem.contact.law = WithState{};
+  EXPECT_EQ(n_in_halo_of(), n_without + 1);
+
+  const Bodies bodies(problem);
+  const auto begin = begin_of(problem, bodies);
+  Stepper before(bodies.sources(), problem.contact, problem.time, {}),
+      after(bodies.sources(), problem.contact, problem.time, {});
+  const auto theta_s = [](const Stepper& stepper) { return stepper.interface_state().law_states.at(0); };
+  before.start(begin.state, 0, begin.loads);
+  const std::vector<double> initial(before.interface_state().size(), 7.5);
+  EXPECT_EQ(theta_s(before), initial);
+  // Any values, by way of what is kept.
+  auto chunks = chunks_of(before, 2);
+  std::vector<double> expected;
+  for (auto& chunk : chunks)
+    for (double& value : chunk.values)
+      if (value == 7.5) expected.push_back(value += static_cast<double>(expected.size()));
+  ASSERT_EQ(expected.size(), initial.size());
+  for (const int n : {2, 3}) {
+    Team team(n, problem);
+    restore(team.stepper(), begin.loads, chunks);
+    Journey journey(begin);
+    take_steps(journey, team.stepper(), 30);
+    restore(after, begin.loads, chunks_of(team.stepper()));
+    EXPECT_EQ(theta_s(after), expected);
+  }
+}
+
+TEST(Subdomains, DoNotGoOnWithAnotherState) {
   Problem narrow, wide;
   wide.plate.width_m = 0.21;
   const Bodies bodies(narrow), others(wide);
+  auto loads = begin_of(narrow, bodies).loads, other_loads = begin_of(wide, others).loads;
+  for (auto* of : {&loads, &other_loads}) of->intact.clear();
   Stepper stepper(bodies.sources(), narrow.contact, narrow.time, {});
   Stepper other(others.sources(), wide.contact, wide.time, {});
-  const auto kept = keep(stepper, {});
-  EXPECT_THROW(restore(kept, other, {}), UserError);
+  stepper.start(begin_of(narrow, bodies).state, 0, loads);
+  other.start(begin_of(wide, others).state, 0, other_loads);
+  const auto kept = chunks_of(stepper);
+  Team two(2, narrow);
+  const auto refusal = [&](TimeStepper& of, const Loads& its_loads, const auto& chunks) -> std::string {
+    try {
+      restore(of, its_loads, chunks);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const auto bodies_differ = testing::HasSubstr("belongs to other bodies");
+  EXPECT_THAT(refusal(other, other_loads, kept), bodies_differ);
+  EXPECT_THAT(refusal(stepper, loads, chunks_of(other)), bodies_differ);
+  const auto weaker = begin_of(narrow, bodies).loads;
+  EXPECT_THAT(refusal(stepper, weaker, kept), testing::HasSubstr("has loads of another case"));
+  EXPECT_THAT(refusal(two.stepper(), weaker, kept), testing::HasSubstr("has loads of another case"));
+
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  struct Change {
+    const char* refusal;
+    void (*change)(StateByNode& chunk);
+  };
+  for (const auto& [expected, change] : std::initializer_list<Change>{
+           {"numbers", [](StateByNode& c) { c.values[5] = nan; }},
+           {"numbers", [](StateByNode& c) { c.sums[1] = nan; }},
+           {"numbers", [](StateByNode& c) { c.flags[0] = 2; }},
+           {"other bodies", [](StateByNode& c) { c.number = 1; }},
+           {"other bodies", [](StateByNode& c) { c.n_chunks = 0; }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].key = -1; }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].key += 1; }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].key = std::int64_t{1} << 62; }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].count = ~std::uint64_t{0}; }},
+           {"other bodies", [](StateByNode& c) { c.runs.pop_back(); }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].width = 0; }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].body = 3; }},
+           {"other bodies", [](StateByNode& c) { c.values.pop_back(); }},
+           {"other bodies", [](StateByNode& c) { c.runs[0].list = 1; }},
+           {"other bodies", [](StateByNode& c) { c.sums.pop_back(); }},
+           {"other bodies", [](StateByNode& c) { c.flags.pop_back(); }}}) {
+    auto chunks = kept;
+    change(chunks.front());
+    EXPECT_THAT(refusal(stepper, loads, chunks), testing::HasSubstr(expected));
+  }
+  EXPECT_EQ(refusal(stepper, loads, kept), "");
 }
 
 TEST(BodySteps, OfManySquaresFollowFromInterfaceAndCorners) {

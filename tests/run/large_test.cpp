@@ -115,22 +115,21 @@ TEST(LargePlate, APartAtTheFarEndIsThatOfTheWhole) {
   EXPECT_EQ(part.plate.x_m.back(), config.plate.width_m);
 
   // What it keeps goes back to it by its numbers.
-  const motion::SubdomainPlace place{columns, mesh::Subset({{columns.begin, columns.end}})};
-  auto kept = motion::keep(*part.stepper, place);
-  kept.sort();
+  const auto all = mesh::Subset({{columns.begin, columns.end}});
+  const auto kept = motion::keep(part.stepper->state(all), 0);
   std::int64_t largest = 0;
-  for (const auto& list : kept.values)
-    for (const auto key : list.key) largest = std::max(largest, key);
+  for (const auto& run : kept.runs)
+    largest = std::max(largest, run.key + static_cast<std::int64_t>(run.count) - 1);
   EXPECT_EQ(largest, n_columns * of_column - 1);
   std::vector<mesh::NodeColumns> bodies;
   for (const auto& of : whole.bodies()) bodies.emplace_back(mesh::blocks(of.mesh));
-  const auto all = mesh::Subset({{columns.begin, columns.end}});
-  const auto again = kept.in(all, place.interface_nodes, bodies, true);
-  for (std::size_t l = 0; l < kept.values.size(); ++l) EXPECT_EQ(again.values[l].key, kept.values[l].key);
-  EXPECT_NO_THROW(motion::restore(again, *part.stepper, place));
-  const auto elsewhere =
-      kept.in(mesh::Subset({{0, columns.begin}}), mesh::Subset({{0, columns.begin}}), bodies, true);
-  for (const auto& list : elsewhere.values) EXPECT_TRUE(list.key.empty());
+  const auto again = kept.in(all, all, bodies, true);
+  EXPECT_EQ(again.values, kept.values);
+  motion::StateRestorer restorer(part.stepper->state(all));
+  restorer.add(again);
+  EXPECT_NO_THROW(restorer.finish());
+  const auto before = mesh::Subset({{0, columns.begin}});
+  EXPECT_TRUE(kept.in(before, before, bodies, true).runs.empty());
 }
 
 TEST(LargePlate, ProbesHaveTheNumbersOfTheWhole) {
