@@ -10,7 +10,7 @@
 #include "mesh/node_columns.hpp"
 #include "motion/interface_side.hpp"
 #include "motion/probes.hpp"
-#include "motion/recorder.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/time_stepper.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"

@@ -9,7 +9,7 @@
 
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
-#include "motion/event.hpp"
+#include "motion/ramp.hpp"
 #include "motion/plain_stepper.hpp"
 #include "processes/processes.hpp"
 #include "run/loads.hpp"

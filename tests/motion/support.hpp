@@ -7,6 +7,7 @@
 
 #include "interface/friction/velocity_weakening.hpp"
 #include "motion/event.hpp"
+#include "motion/trigger_zone.hpp"
 #include "motion/stepper.hpp"
 #include "support/plate.hpp"
 
