@@ -11,8 +11,8 @@
 
 namespace slipfront {
 
-/// Where the state of work under way is written to, or read from: numbers as they are in memory. Whoever has a
-/// state lists its members once, for both: `archive(a, b)`. Types tell theirs by a template `serialize`.
+/// Where the state of work under way is written to, or read from: numbers as they are in memory. Whoever has
+/// a state lists its members once, for both: `archive(a, b)`. Types tell theirs by a template `serialize`.
 class StateArchive {
  public:
   StateArchive() = default;

@@ -300,9 +300,7 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
       buffer.put(known.time_s);
       for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
         buffer.put(cut(*values, interface_nodes));
-      buffer.put(cut(known.slipping, interface_nodes))
-          .put(finder.halo())
-          .put(finder.creep_m_per_s());
+      buffer.put(cut(known.slipping, interface_nodes)).put(finder.halo()).put(finder.creep_m_per_s());
       return buffer;
     });
   has_finders_ = true;

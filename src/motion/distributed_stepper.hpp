@@ -49,7 +49,8 @@ class DistributedStepper final : public TimeStepper {
   const std::vector<Probe>& probes() const override { return probes_; }
   std::vector<double> probed_u_m() const override { return probed(0); }
   std::vector<double> probed_v_m_per_s() const override { return probed(1); }
-  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
+                       const StepCallbacks& callbacks) override;
   record::Energies energies() override;
   double kinetic_energy_J_per_m() const override;
   double mass_kg_per_m() const override;

@@ -60,8 +60,8 @@ struct EventSetup {
 };
 
 /// An event under way: steps a started stepper, with the observers of an event, until the end time, or until
-/// nothing has moved for time.quiet_s after the trigger's loads last changed (RestCriterion), or until the motion
-/// is none of a plate (BlowUpMonitor).
+/// nothing has moved for time.quiet_s after the trigger's loads last changed (RestCriterion), or until the
+/// motion is none of a plate (BlowUpMonitor).
 class EventRun {
  public:
   /// @param monitor  may interrupt it, for good; what is kept meanwhile can go on

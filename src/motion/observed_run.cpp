@@ -67,6 +67,11 @@ bool ObservedRun::after_step(const SlipRates& rates) {
 }
 
 void ObservedRun::archive(StateArchive& archive) {
+  const auto n_kept =
+      std::ranges::count_if(observers_, [](const auto& observer) { return observer->name() != nullptr; });
+  auto n = static_cast<std::uint64_t>(n_kept);
+  archive(n);
+  require_possible(n == static_cast<std::uint64_t>(n_kept), "observers");
   finder().archive(archive);
   for (const auto& observer : observers_) {
     if (observer->name() == nullptr) continue;

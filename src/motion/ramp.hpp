@@ -6,12 +6,14 @@
 #include "base/per_node.hpp"
 #include "motion/observed_run.hpp"
 #include "motion/observers/progress.hpp"
-#include "motion/observers/ramp_states.hpp"
 #include "motion/stepper.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::motion {
+
+/// Relative distance to mu_s at which the ramp hands over to the spontaneous event.
+inline constexpr double ramp_handover = 1e-5;
 
 /// States that the explicit ramp reaches, and what happened on the way.
 struct Ramp {
@@ -32,17 +34,24 @@ struct Ramp {
   }
 };
 
+/// What a ramp begins with.
+struct RampSetup {
+  const statics::Equilibrium& tilted;
+  const statics::Loading& loading;
+  PerNode mu_s;  ///< of the interface nodes
+  double top_speed_m_per_s, c_L_m_per_s;
+  double expected_shear_m;  ///< at which mu_s is reached
+};
+
 /// A ramp under way: moves the loaded edge of the tilted plate at top_speed_m_per_s by explicit steps until
 /// t/p inside the interface reaches mu_s.
 class RampRun {
  public:
-  /// @param stepper  started from `tilted` at the top's speed
-  /// @param mu_s     of the interface nodes
-  RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
-          const PerNode& mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
-          const Monitor& monitor);
+  /// @param stepper  started from the tilted state at the top's speed
+  /// @throws UserError where it takes too many steps
+  RampRun(Stepper& stepper, const RampSetup& setup, const Monitor& monitor);
 
-  /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
+  /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear expected.
   Ramp run();
 
   /// All that changes while the monitor is asked, but for the stepper.

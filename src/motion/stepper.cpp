@@ -178,7 +178,8 @@ std::vector<double> Stepper::probed_v_m_per_s() const {
   return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].v_m_per_s(); });
 }
 
-std::int64_t Stepper::advance(SlipObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks) {
+std::int64_t Stepper::advance(SlipObserver& observer, std::int64_t max_steps,
+                              const StepCallbacks& callbacks) {
   return advance(static_cast<UpdateObserver&>(observer), max_steps, callbacks);
 }
 

@@ -12,8 +12,8 @@
 #include "motion/body.hpp"
 #include "motion/coupling.hpp"
 #include "motion/probes.hpp"
-#include "motion/slip_finder.hpp"
 #include "motion/settings.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/time_stepper.hpp"
 #include "processes/processes.hpp"
 #include "record/energies.hpp"
@@ -106,7 +106,8 @@ class Stepper : public TimeStepper {
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
 
-  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
+                       const StepCallbacks& callbacks) override;
   /// The same, seen by any observer.
   std::int64_t advance(UpdateObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks,
                        const BandCallbacks& band_callbacks = {});

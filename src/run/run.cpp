@@ -226,7 +226,8 @@ std::string end_of_event(const Result& result) {
     case motion::EventEnd::blow_up:
       return result.event.reason;
     case motion::EventEnd::observer:
-      return fmt::format("an observer ended it at t = {:.4g} s: {}", result.event.time_s, result.event.reason);
+      return fmt::format("an observer ended it at t = {:.4g} s: {}", result.event.time_s,
+                         result.event.reason);
     case motion::EventEnd::quiet:
       break;
   }

@@ -9,8 +9,8 @@
 #include "interface/friction/coulomb.hpp"
 #include "motion/observers/onsets.hpp"
 #include "motion/support.hpp"
-#include "support/state.hpp"
 #include "statics/prestress.hpp"
+#include "support/state.hpp"
 
 namespace slipfront::motion {
 namespace {

@@ -41,8 +41,8 @@ class EventRun : public ::testing::Test {
   Sampling sampling_;
   interface::Trigger none_;
 
-  Event run(const statics::Equilibrium& state, const Monitor& monitor = always,
-            EventOutput* output = nullptr, Observers more = {}) {
+  Event run(const statics::Equilibrium& state, const Monitor& monitor = always, EventOutput* output = nullptr,
+            Observers more = {}) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
     stepper.start(state, 1e-6 * c_L_);
     const EventSetup setup = {state, mu_s, waves_, none_, time_, sampling_, 2};
@@ -339,7 +339,7 @@ Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, double top_s
               double c_L_m_per_s, double expected_shear_m, const Monitor& monitor) {
   const statics::Loading loading;
   stepper.start(tilted, top_speed_m_per_s);
-  return RampRun(stepper, tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m, monitor)
+  return RampRun(stepper, {tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m}, monitor)
       .run();
 }
 
@@ -370,9 +370,8 @@ TEST(Ramp, ReachesTheStaticStates) {
   }
 
   // It can be interrupted, and tells when mu_s is out of reach.
-  EXPECT_TRUE(run_ramp(stepper, tilted, speed, c_L, expected.shear_m, [](auto, auto) {
-                return false;
-              }).interrupted);
+  EXPECT_TRUE(
+      run_ramp(stepper, tilted, speed, c_L, expected.shear_m, [](auto, auto) { return false; }).interrupted);
   {
     const test::InterruptionAfter after(72);
     const auto begun = run_ramp(stepper, tilted, speed, c_L, expected.shear_m,

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/observers/onsets.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "fronts/front.hpp"
+#include "motion/observers/onsets.hpp"
 #include "motion/support.hpp"
 #include "support/state.hpp"
 

@@ -31,8 +31,9 @@ TEST(Observers, TheExampleEndsAnEventAtASlip) {
   const auto whole = run_from(config, initial, test::go_on);
   const auto& slip_m = whole.event.history.slip_m;
   const double limit_m = 0.5 * *std::ranges::max_element(slip_m);
-  const auto result = run_from(config, initial, test::go_on, {},
-                               list_of(std::make_unique<SlipLimit>(limit_m, config.output.history_interval_s)));
+  const auto result =
+      run_from(config, initial, test::go_on, {},
+               list_of(std::make_unique<SlipLimit>(limit_m, config.output.history_interval_s)));
   EXPECT_EQ(result.event.end, motion::EventEnd::observer);
   EXPECT_THAT(end_of_event(result), HasSubstr("slip has reached"));
   // Up to there it is the same event: the last row of the history is the one that was looked at.
@@ -86,9 +87,11 @@ TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
                        const std::function<motion::Observers()>& observers) {
     results::ResultFolder folder(dir, run_work);
     std::int64_t at = 0;
-    const SessionHooks hooks{
-        [&](const char* part, std::int64_t step, std::int64_t) { at = std::string(part) == "event" ? step : 0; },
-        [&] { return at >= stop_at ? Request::stop : Request::none; }, [](const std::string&) {}};
+    const SessionHooks hooks{[&](const char* part, std::int64_t step, std::int64_t) {
+                               at = std::string(part) == "event" ? step : 0;
+                             },
+                             [&] { return at >= stop_at ? Request::stop : Request::none; },
+                             [](const std::string&) {}};
     SessionOptions options;
     options.threads = 2;
     options.observers = observers;
@@ -128,7 +131,8 @@ TEST(Observers, ACheckpointIsOfTheObserversThatKeptIt) {
   results::ResultFolder folder(dir.path(), run_work);
   run_into(folder, config, options, hooks);
   options.observers = {};
-  EXPECT_THAT(test::error_of([&] { resume(folder, nullptr, options, hooks); }), HasSubstr("has observers of"));
+  EXPECT_THAT(test::error_of([&] { resume(folder, nullptr, options, hooks); }),
+              HasSubstr("has observers of"));
 }
 
 }  // namespace

@@ -84,19 +84,17 @@ std::optional<End> BlowUpMonitor::end(Pause& pause) {
 /// The motion is not to be checked yet, and its energies balance.
 void BlowUpMonitor::restored(Pause& pause) {
   const auto step = pause.now().step;
-  require_possible(
-      checked_step_ >= 0 && checked_step_ <= step && steps_to_pause(pause.now()) > 0, "steps");
+  require_possible(checked_step_ >= 0 && checked_step_ <= step && steps_to_pause(pause.now()) > 0, "steps");
   const auto& now = pause.energies();
   double largest = 0;
   for (const auto& term : record::energy_terms)
     largest = std::max({largest, std::abs(now.*term.member), std::abs(start_.*term.member)});
   const double imbalance = std::abs(record::imbalance_J_per_m(now, start_));
-  require_possible(
-      precision_ == Precision::single_precision
-          ? std::isfinite(imbalance)
-          : imbalance <=
-                balance_tolerance * largest + negligible_part * stepper_.energy_of_tractions_J_per_m(),
-      "a motion");
+  require_possible(precision_ == Precision::single_precision
+                       ? std::isfinite(imbalance)
+                       : imbalance <= balance_tolerance * largest +
+                                          negligible_part * stepper_.energy_of_tractions_J_per_m(),
+                   "a motion");
 }
 
 std::string BlowUpMonitor::energy_failure(const record::Energies& now) const {

@@ -9,9 +9,9 @@
 
 namespace slipfront::motion {
 
-/// Monitors that the motion stays physical: in every step numbers finite and slip rates below c_L, and whenever
-/// energies are known and at least every 100 steps no more energy than was there at the start and has been
-/// supplied since, but for 1 %.
+/// Monitors that the motion stays physical: in every step numbers finite and slip rates below c_L, and
+/// whenever energies are known and at least every 100 steps no more energy than was there at the start and
+/// has been supplied since, but for 1 %.
 class BlowUpMonitor final : public Observer {
  public:
   /// @param start  energies at time 0

@@ -69,8 +69,7 @@ void Onsets::restored(Pause& pause) {
       "a slip record");
 }
 
-void Onsets::take_change(std::size_t node, const Waiting& change,
-                           std::span<const record::Traction> around) {
+void Onsets::take_change(std::size_t node, const Waiting& change, std::span<const record::Traction> around) {
   auto& waiting = waiting_[node];
   // Without both changes the node is taken to slip, or to stick, from the one to the other. First onsets yet
   // to come are no earlier than the later one: it lies in this (sub-)step, and they in later ones.

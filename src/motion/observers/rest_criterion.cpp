@@ -51,9 +51,9 @@ std::optional<End> RestCriterion::end(Pause& pause) {
 /// The trigger may yet act.
 void RestCriterion::restored(Pause& pause) {
   require_possible(since_s_ >= from_s_ && since_s_ <= std::max(pause.now().time_s(), from_s_) &&
-                                  slowest_m_per_s_ >= 0 && std::isfinite(slowest_m_per_s_) &&
-                                  largest_kinetic_J_per_m_ >= 0 && std::isfinite(largest_kinetic_J_per_m_),
-                              "times of motion");
+                       slowest_m_per_s_ >= 0 && std::isfinite(slowest_m_per_s_) &&
+                       largest_kinetic_J_per_m_ >= 0 && std::isfinite(largest_kinetic_J_per_m_),
+                   "times of motion");
 }
 
 void RestCriterion::see_slip_rate(double time_s, double fastest_m_per_s) {

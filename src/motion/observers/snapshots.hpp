@@ -28,8 +28,8 @@ class Snapshots final : public Observer {
   void restored(Pause& pause) override {
     const double now_s = pause.now().time_s();
     require_possible(next_ <= times_s_.size() && (next_ == 0 || times_s_[next_ - 1] <= now_s) &&
-                                    (next_ == times_s_.size() || times_s_[next_] > now_s),
-                                "snapshots");
+                         (next_ == times_s_.size() || times_s_[next_] > now_s),
+                     "snapshots");
   }
 
  private:
