@@ -15,8 +15,7 @@ class SlipLimit final : public slipfront::motion::IntervalObserver {
                    slipfront::motion::Pause& /*pause*/) override {
     const auto k = std::ranges::max_element(row.slip_m) - row.slip_m.begin();
     if (row.slip_m[k] < limit_m_) return {};
-    return "slip has reached " + std::to_string(1e6 * limit_m_) + " um at x = " + std::to_string(row.x_m[k]) +
-           " m";
+    return "slip has reached its limit at x = " + std::to_string(row.x_m[k]) + " m";
   }
 
  private:

@@ -178,10 +178,10 @@ def run(
     checkpoint_every_s: wall time between checkpoints, s.
     progress: a bar on terminals and in notebooks, or a function that is called with part ("ramp" or "event"),
     steps done and their total; what it raises ends the run.
-    observers: pairs of an interval of simulated time, s, and a function. It is called between steps of the event
-    with an `InterfaceState`: of time 0, and of the first step at or after each multiple of the interval. A text
-    that it returns ends the event, as the reason. What it raises ends the run; a checkpoint is kept, and `resume`
-    goes on behind the state that was shown last.
+    observers: pairs of an interval of simulated time, s, and a function. It is called between steps of the
+    event with an `InterfaceState`: of time 0, and of the first step at or after each multiple of the
+    interval. A text that it returns ends the event, as the reason. What it raises ends the run; a checkpoint
+    is kept, and `resume` goes on behind the state that was shown last.
 
     Other Python threads go on meanwhile. Ctrl-C ends the run within a few steps with a KeyboardInterrupt; its
     checkpoint is kept, and `resume` goes on from there.

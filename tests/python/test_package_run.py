@@ -157,11 +157,11 @@ def test_observers_are_shown_the_interface(tmp_path):
         seen.append((state.step, state.time_s))
         kept.append(state.slip_m)
         assert repr(state).startswith(f"<interface at step {state.step}, t = ")
-        for values in (state.x_m, state.slip_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa):
-            assert len(values) == len(state.x_m)
-            assert not values.flags.owndata  # no copy
+        for field in (state.x_m, state.slip_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa):
+            assert len(field) == len(state.x_m)
+            assert not field.flags.owndata  # no copy
             with pytest.raises(ValueError, match="read-only"):
-                values[0] = 0
+                field[0] = 0
 
     run = slipfront.run(
         case, {"output.history_interval_s": 2e-6}, output=tmp_path / "out", observers=[(2e-6, look)]
