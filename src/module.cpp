@@ -8,6 +8,7 @@ NB_MODULE(_core, module) {
   module.doc() = "The compiled part of slipfront; use the package slipfront, which explains it.";
   module.def("version", &slipfront::version_line, "Version and commit that the module was built from.");
   slipfront::python::bind_errors(module);
+  slipfront::python::bind_observers(module);
   slipfront::python::bind_cases(module);
   slipfront::python::bind_fronts(module);
   slipfront::python::bind_fits(module);

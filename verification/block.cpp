@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "interface/friction/slip_weakening.hpp"
+#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
+#include "motion/observers/onsets.hpp"
 #include "statics/prestress.hpp"
 #include "verification/body.hpp"
 #include "verification/join.hpp"

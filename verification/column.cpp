@@ -7,6 +7,7 @@
 #include <string>
 
 #include "interface/friction/velocity_weakening.hpp"
+#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 

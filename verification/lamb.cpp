@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "interface/friction/coulomb.hpp"
+#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "interface/friction/slip_weakening.hpp"
+#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 
 namespace slipfront::verification {

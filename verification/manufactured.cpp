@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "interface/friction/coulomb.hpp"
+#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/join.hpp"
 #include "verification/orders.hpp"

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "motion/observers/onsets.hpp"
 #include "stability/modes.hpp"
 #include "verification/body.hpp"
 

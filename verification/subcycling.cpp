@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "interface/friction/coulomb.hpp"
+#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/join.hpp"
 #include "verification/problems.hpp"

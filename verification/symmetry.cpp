@@ -6,7 +6,8 @@
 #include <numbers>
 
 #include "interface/friction/slip_weakening.hpp"
-#include "motion/event.hpp"
+#include "motion/observers/onsets.hpp"
+#include "motion/trigger_zone.hpp"
 #include "solid/element.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Wave speeds of a material, and the front of a case: downstream CASE.toml
+// Wave speeds of a material, and the front of a case until a slip of 20 um: downstream CASE.toml
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <memory>
+#include <utility>
 
 #include "base/error.hpp"
 #include "input/schema.hpp"
 #include "run/run.hpp"
+#include "slip_limit.hpp"
 #include "solid/material.hpp"
 
 namespace {
@@ -19,7 +22,10 @@ int run(const char* file) {
               solid::rayleigh_speed_m_per_s(config.material));
   const auto go_on = [](std::int64_t, std::int64_t) { return true; };
   const run::InitialState initial = run::make_initial_state(config, go_on);
-  const run::Result result = run::run_from(config, initial, go_on);
+  motion::Observers observers;
+  observers.push_back(std::make_unique<SlipLimit>(20e-6, 1e-6));
+  const run::Result result = run::run_from(config, initial, go_on, {}, std::move(observers));
+  std::printf("%s\n", run::end_of_event(result).c_str());
   for (const auto& front : result.fronts)
     std::printf("front %d: x = %.4f to %.4f m\n", front.id, front.points.front().x_m,
                 front.points.back().x_m);

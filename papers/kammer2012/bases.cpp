@@ -211,7 +211,7 @@ BasesResult study_bases(const BasesOptions& options, const BasesMonitor& monitor
   batch.run(configs, [&](std::size_t k, const run::Result& run, const run::InitialState& initial, bool) {
     outcomes[k] = make_outcome(cases[k].name, run, initial);
     if (run.event.end == motion::EventEnd::blow_up)
-      result.warnings.push_back(cases[k].config.title + ": " + run.event.blow_up);
+      result.warnings.push_back(cases[k].config.title + ": " + run.event.reason);
     monitor(++done, cases.size());
   });
   result.counts = batch.counts();

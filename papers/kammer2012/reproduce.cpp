@@ -48,7 +48,7 @@ class Runner {
             const std::lock_guard lock(files_);  // HDF5 need not be built for several threads
             if (!was_kept) write(dir_ / name, result, initial);
             if (result.event.end == motion::EventEnd::blow_up)
-              blow_ups.push_back(name + ": " + result.event.blow_up);
+              blow_ups.push_back(name + ": " + result.event.reason);
           }
           outcomes[k] = make_outcome(config_name(name), result, initial);
           wanted(name);

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from slipfront._core import Collapse as Collapse
     from slipfront._core import ExponentialFit as ExponentialFit
     from slipfront._core import Info as Info
+    from slipfront._core import InterfaceState as InterfaceState
     from slipfront._core import Outcome as Outcome
     from slipfront._core import Rupture as Rupture
     from slipfront._core import WaveSpeeds as WaveSpeeds
@@ -48,6 +49,7 @@ _PLACES = {
     "Collapse": "_core",
     "ExponentialFit": "_core",
     "Info": "_core",
+    "InterfaceState": "_core",
     "Outcome": "_core",
     "Rupture": "_core",
     "WaveSpeeds": "_core",

@@ -89,12 +89,17 @@ def outcome(value: _core.Outcome) -> str:
     return f"<event '{value.name}': {n} fronts of at least 10 mm, {places}>"
 
 
+def interface_state(value: _core.InterfaceState) -> str:
+    return f"<interface at step {value.step}, t = {value.time_s:.6g} s: {len(value.x_m)} nodes>"
+
+
 PRINTED: dict[type, Callable[[Any], str]] = {
     **dict.fromkeys(LISTED, listing),
     _core.Estimate: estimate,
     _core.Figure: figure,
     _core.Claim: claim,
     _core.Front: front,
+    _core.InterfaceState: interface_state,
     _core.Outcome: outcome,
 }
 for kind, shown in PRINTED.items():

@@ -8,7 +8,7 @@ import math
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
@@ -27,6 +27,8 @@ from slipfront.read import read_place
 CaseLike = str | os.PathLike[str] | Mapping[str, Any]
 # Called at times with the part ("ramp" or "event"), the steps done and their total.
 Progress = Callable[[str, int, int], None]
+# An interval of simulated time, s, and a function that is shown the interface at it.
+Observer = tuple[float, Callable[[_core.InterfaceState], str | None]]
 
 LARGEST_INTEGER = 2**63  # of TOML
 MOST_THREADS = 1024
@@ -141,6 +143,16 @@ def threads_of(threads: int | None) -> int | None:
     return None if threads is None else whole(threads, "threads", least=1, most=MOST_THREADS)
 
 
+def observers_of(observers: Iterable[Observer]) -> list[Observer]:
+    """Checked."""
+    pairs: list[Observer] = []
+    for each in observers:
+        if not isinstance(each, tuple | list) or len(each) != 2 or not callable(each[1]):
+            raise CaseError(f"observers has {shown(each)}; give pairs of an interval, s, and a function")
+        pairs.append((number(each[0], "the interval of an observer", least=0), each[1]))
+    return pairs
+
+
 def run(
     case: CaseLike,
     changes: Mapping[str, Any] | None = None,
@@ -151,6 +163,7 @@ def run(
     threads: int | None = None,
     checkpoint_every_s: float = CHECKPOINT_EVERY_S,
     progress: bool | Progress = True,
+    observers: Iterable[Observer] = (),
     **tables: Any,
 ) -> OpenRun:
     """Runs a case: statics, event, fronts. The results are those of `slipfront run`, bit for bit.
@@ -165,6 +178,10 @@ def run(
     checkpoint_every_s: wall time between checkpoints, s.
     progress: a bar on terminals and in notebooks, or a function that is called with part ("ramp" or "event"),
     steps done and their total; what it raises ends the run.
+    observers: pairs of an interval of simulated time, s, and a function. It is called between steps of the
+    event with an `InterfaceState`: of time 0, and of the first step at or after each multiple of the
+    interval. A text that it returns ends the event, as the reason. What it raises ends the run; a checkpoint
+    is kept, and `resume` goes on behind the state that was shown last.
 
     Other Python threads go on meanwhile. Ctrl-C ends the run within a few steps with a KeyboardInterrupt; its
     checkpoint is kept, and `resume` goes on from there.
@@ -177,9 +194,10 @@ def run(
     prepared = make_case(case, changes, tables)
     replace, n_threads = flag(overwrite, "overwrite"), threads_of(threads)
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
+    called = observers_of(observers)
 
     def work(folder: Path) -> None:
-        compute(lambda show: prepared.run(folder, replace, n_threads, every_s, show), progress)
+        compute(lambda show: prepared.run(folder, replace, n_threads, every_s, show, called), progress)
 
     if output is not None:
         folder = path(output, "output")
@@ -202,13 +220,17 @@ def resume(
     threads: int | None = None,
     checkpoint_every_s: float = CHECKPOINT_EVERY_S,
     progress: bool | Progress = True,
+    observers: Iterable[Observer] = (),
 ) -> OpenRun:
     """Goes on with a run that was left unfinished in a folder, as if it had never stopped: bit for bit.
+
+    observers: those of `run`, or others.
 
     A run that is complete is opened. Raises as `run` does."""
     folder, n_threads = path(output, "output"), threads_of(threads)
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
-    compute(lambda show: _core.resume(folder, n_threads, every_s, show), progress)
+    called = observers_of(observers)
+    compute(lambda show: _core.resume(folder, n_threads, every_s, show, called), progress)
     return OpenRun(read_place(folder))
 
 

@@ -19,6 +19,7 @@
 #include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "mesh/reorder.hpp"
+#include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
 #include "run/needs.hpp"
 #include "run/run.hpp"

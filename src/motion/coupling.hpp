@@ -8,7 +8,7 @@
 #include "interface/trigger.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/interface_side.hpp"
-#include "motion/recorder.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
 #include "motion/time_stepper.hpp"
 #include "record/energies.hpp"

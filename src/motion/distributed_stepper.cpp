@@ -266,7 +266,7 @@ void DistributedStepper::put_probes_in_order(std::span<const double> report, dou
     std::ranges::copy(report.subspan(n_values * k, n_values), to + n_values * probe_order_[k]);
 }
 
-std::int64_t DistributedStepper::advance(Recorder& recorder, std::int64_t max_steps,
+std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t max_steps,
                                          const StepCallbacks& callbacks) {
   std::int64_t taken = 0;
   // Subdomains keep their logs of tractions between commands.
@@ -274,18 +274,18 @@ std::int64_t DistributedStepper::advance(Recorder& recorder, std::int64_t max_st
   int widest = 0;
   for (const auto& own : own_interface_nodes_) widest = std::max(widest, own.end - own.begin);
   const double logged =
-      TractionLog::bytes_per_update(widest, recorder.record().halo) * std::round(step_s() / substep_s());
+      TractionLog::bytes_per_update(widest, observer.finder().halo()) * std::round(step_s() / substep_s());
   const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / (logged + 1)));
   while (taken < max_steps) {
     const auto n = std::min({max_steps - taken, callbacks.guaranteed_steps(), at_once});
-    const auto steps = advance_guaranteed(recorder, n, callbacks);
+    const auto steps = advance_guaranteed(observer, n, callbacks);
     taken += steps.taken;
     if (!steps.goes_on || callbacks.interrupted()) break;
   }
   return taken;
 }
 
-DistributedStepper::Steps DistributedStepper::advance_guaranteed(Recorder& recorder, std::int64_t n_steps,
+DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& observer, std::int64_t n_steps,
                                                                  const StepCallbacks& callbacks) {
   const auto first_step = step_;
   std::vector<record::History*> samples;
@@ -295,7 +295,7 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(Recorder& recor
     is_sampled.push_back(samples.back() != nullptr);
   }
   step_ = first_step;
-  auto& finder = recorder.finder();
+  auto& finder = observer.finder();
   if (!has_finders_)
     ask(SubdomainCommand::memory, [&](int subdomain) {
       const auto& known = finder.memory();
@@ -304,9 +304,7 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(Recorder& recor
       buffer.put(known.time_s);
       for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
         buffer.put(cut(*values, interface_nodes));
-      buffer.put(cut(known.slipping, interface_nodes))
-          .put(recorder.record().halo)
-          .put(finder.creep_m_per_s());
+      buffer.put(cut(known.slipping, interface_nodes)).put(finder.halo()).put(finder.creep_m_per_s());
       return buffer;
     });
   has_finders_ = true;
@@ -322,7 +320,7 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(Recorder& recor
   const auto n_displacements = displacement_values(probes_);
   std::ptrdiff_t row = 0;
   for (std::int64_t k = 0; k < n_steps; ++k) {
-    for (long substep = 0; substep < n_substeps; ++substep) recorder.consume(slips.next());
+    for (long substep = 0; substep < n_substeps; ++substep) observer.at_update(slips.next());
     if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
       to->time_s.push_back(time_s());
       for (std::size_t f = 0; f < record::history_fields.size(); ++f) {

@@ -48,7 +48,8 @@ class DistributedStepper final : public TimeStepper {
   const std::vector<Probe>& probes() const override { return probes_; }
   std::vector<double> probed_u_m() const override { return probed(0); }
   std::vector<double> probed_v_m_per_s() const override { return probed(1); }
-  std::int64_t advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
+                       const StepCallbacks& callbacks) override;
   record::Energies energies() override;
   double kinetic_energy_J_per_m() const override;
   double mass_kg_per_m() const override;
@@ -92,7 +93,7 @@ class DistributedStepper final : public TimeStepper {
     bool goes_on = false;
   };
   /// Steps before which may_continue does not refuse a motion that is physical.
-  Steps advance_guaranteed(Recorder& recorder, std::int64_t n_steps, const StepCallbacks& callbacks);
+  Steps advance_guaranteed(SlipObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks);
   /// Asks for tractions around onsets near a subdomain's end, in the last command's updates, which the
   /// subdomains beside it know.
   void add_tractions_of_others(SlipUpdates& seen, std::size_t n_around) const;

@@ -199,12 +199,12 @@ StateView PlainStepper::state() {
   return state;
 }
 
-std::int64_t PlainStepper::advance(Recorder& recorder, std::int64_t max_steps,
+std::int64_t PlainStepper::advance(SlipObserver& observer, std::int64_t max_steps,
                                    const StepCallbacks& callbacks) {
   for (std::int64_t taken = 0; taken < max_steps;) {
     record::History* sample = callbacks.sample();
     take_step(std::span(bodies_), substeps_, [&](int k) {
-      coupling_.update(time_s() + k * substep_s(), substep_s(), recorder, k == 0 ? sample : nullptr,
+      coupling_.update(time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
                        bodies_.front().works);
     });
     if (double* to = probes_.empty() ? nullptr : callbacks.displacements(step_ + 1); to != nullptr)

@@ -90,25 +90,12 @@ ProbeRecorder::ProbeRecorder(std::vector<Probe> probes, double step_s, double in
                              std::vector<double> before_m, std::vector<double> now_m)
     : probes_(std::move(probes)),
       step_s_(step_s),
-      interval_s_(std::max(interval_s, step_s)),
+      every_(interval_s),
       before_m_(std::move(before_m)),
       now_m_(std::move(now_m)) {
   SLIPFRONT_ASSERT(
       before_m_.size() == displacement_values(probes_) && now_m_.size() == displacement_values(probes_),
       "a displacement for each node of the probes");
-}
-
-/// Whether a step is the first at or after a multiple of the interval; the first step of all is.
-bool ProbeRecorder::is_sampled(std::int64_t step) const {
-  if (step <= 0) return step == 0;
-  const auto n_until = [&](std::int64_t k) {
-    const double time_s = static_cast<double>(k) * step_s_;
-    auto n = static_cast<std::int64_t>(time_s / interval_s_);
-    while (static_cast<double>(n + 1) * interval_s_ <= time_s) ++n;
-    while (static_cast<double>(n) * interval_s_ > time_s) --n;
-    return n;
-  };
-  return n_until(step) > n_until(step - 1);
 }
 
 void ProbeRecorder::expect(std::int64_t first, std::int64_t n) {
@@ -129,6 +116,7 @@ double* ProbeRecorder::room_for(std::int64_t step) {
 }
 
 void ProbeRecorder::take_rows(std::int64_t last, record::ProbeRecord& rows) {
+  last = std::min(last, first_ + std::ssize(place_));
   for (std::int64_t step = first_ + 1; step <= last; ++step) {
     const double* kept = room_for(step);
     if (kept == nullptr) continue;
@@ -137,6 +125,7 @@ void ProbeRecorder::take_rows(std::int64_t last, record::ProbeRecord& rows) {
     std::swap(before_m_, now_m_);
     now_m_.assign(after_m.begin(), after_m.end());
   }
+  place_.clear();
 }
 
 void ProbeRecorder::append_row(double time_s, std::span<const double> after_m,

@@ -10,6 +10,7 @@
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
+#include "motion/every.hpp"
 #include "motion/level.hpp"
 #include "record/probes.hpp"
 #include "solid/element.hpp"
@@ -86,7 +87,7 @@ class ProbeRecorder {
   /// Where the displacements at a step belong; null where it is not needed. For one of these steps, from any
   /// thread.
   double* room_for(std::int64_t step);
-  /// Appends the rows that are complete when the steps up to `last` are done.
+  /// Appends the rows that are complete when the steps up to `last` are done, of those expected.
   void take_rows(std::int64_t last, record::ProbeRecord& rows);
 
   /// All that changes between two calls of expect.
@@ -97,11 +98,12 @@ class ProbeRecorder {
   }
 
  private:
-  bool is_sampled(std::int64_t step) const;
+  bool is_sampled(std::int64_t step) const { return every_.is_due({step, step_s_}); }
   void append_row(double time_s, std::span<const double> after_m, record::ProbeRecord& rows) const;
 
   std::vector<Probe> probes_;
-  double step_s_, interval_s_;
+  double step_s_;
+  Every every_;
   std::vector<double> before_m_, now_m_;  ///< of the last two steps that were needed
   std::int64_t first_ = 0;
   std::vector<std::ptrdiff_t> place_;  ///< of the steps expected, in kept_m_; negative: not needed

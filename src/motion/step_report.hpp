@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "motion/recorder.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/time_stepper.hpp"
 #include "processes/message_buffer.hpp"
 #include "record/record.hpp"

@@ -186,8 +186,9 @@ std::vector<double> Stepper::probed_v_m_per_s() const {
   return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].v_m_per_s(); });
 }
 
-std::int64_t Stepper::advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) {
-  return advance(static_cast<UpdateObserver&>(recorder), max_steps, callbacks);
+std::int64_t Stepper::advance(SlipObserver& observer, std::int64_t max_steps,
+                              const StepCallbacks& callbacks) {
+  return advance(static_cast<UpdateObserver&>(observer), max_steps, callbacks);
 }
 
 std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t max_steps,
@@ -216,13 +217,13 @@ void Stepper::advance(UpdateObserver& observer, record::History* sample) {
   advance(observer, 1, {.sample = [sample] { return sample; }});
 }
 
-void Stepper::reverse(Recorder& recorder) {
+void Stepper::reverse(UpdateObserver& observer) {
   // All cells kick at the beginning of a step: the motion back begins with the velocities after these
   // impulses, at the places before them. It keeps the steady forces on shared nodes, without which it would
   // be another.
   std::vector<solid::Field> u;
   for (const auto& body : bodies_) u.push_back(body.u_m());
-  advance_interface(step_, 1, recorder, nullptr);
+  advance_interface(step_, 1, observer, nullptr);
   for (int band = 0; band < n_bands_; ++band) advance_band(step_, static_cast<std::size_t>(band));
   coupling_.reverse();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {

@@ -12,8 +12,8 @@
 #include "motion/body.hpp"
 #include "motion/coupling.hpp"
 #include "motion/probes.hpp"
-#include "motion/recorder.hpp"
 #include "motion/settings.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/time_stepper.hpp"
 #include "processes/processes.hpp"
 #include "record/energies.hpp"
@@ -106,7 +106,8 @@ class Stepper : public TimeStepper {
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
 
-  std::int64_t advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
+                       const StepCallbacks& callbacks) override;
   /// The same, seen by any observer.
   std::int64_t advance(UpdateObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks,
                        const BandCallbacks& band_callbacks = {});
@@ -115,8 +116,8 @@ class Stepper : public TimeStepper {
 
   /// Turns the motion round: the steps to come go back through the displacements of those before, exactly but
   /// for rounding where the forces do not depend on time and nothing dissipates. Time goes on. The contact is
-  /// updated once, which the recorder sees; the works start anew and lack the first step's coupling.
-  void reverse(Recorder& recorder);
+  /// updated once, which the observer sees; the works start anew and lack the first step's coupling.
+  void reverse(UpdateObserver& observer);
 
   std::int64_t step() const override { return step_; }
   const solid::Field& u_m() const { return bodies_.front().u_m(); }

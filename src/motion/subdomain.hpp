@@ -10,7 +10,7 @@
 
 #include "motion/halo.hpp"
 #include "motion/partition.hpp"
-#include "motion/recorder.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
 #include "motion/stepper.hpp"
 #include "processes/processes.hpp"

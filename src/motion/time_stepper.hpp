@@ -6,8 +6,9 @@
 #include <functional>
 #include <vector>
 
+#include "motion/every.hpp"
 #include "motion/probes.hpp"
-#include "motion/recorder.hpp"
+#include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
@@ -75,7 +76,8 @@ class TimeStepper {
 
   /// Time of the displacements. The velocities belong to half a step, or half a sub-step in the layer,
   /// earlier.
-  double time_s() const { return static_cast<double>(step()) * step_s(); }
+  double time_s() const { return now().time_s(); }
+  Now now() const { return {step(), step_s()}; }
   virtual std::int64_t step() const = 0;
 
   virtual const std::vector<Probe>& probes() const = 0;
@@ -84,10 +86,10 @@ class TimeStepper {
   virtual std::vector<double> probed_v_m_per_s() const = 0;
 
   /// Takes at most `max_steps` steps, several of them in one sweep through memory. Every contact update is
-  /// shown to the recorder.
+  /// shown to the observer.
   /// @return the number of steps taken
-  /// @throws what recorder and `between` throw; after that only start may follow.
-  virtual std::int64_t advance(Recorder& recorder, std::int64_t max_steps,
+  /// @throws what observer and callbacks throw; after that only start may follow.
+  virtual std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
                                const StepCallbacks& callbacks) = 0;
 
   /// Energies and works up to the last half (sub-)step.

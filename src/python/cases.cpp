@@ -21,6 +21,7 @@
 #include "mesh/plate.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/observers.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
 #include "run/needs.hpp"
@@ -77,11 +78,13 @@ struct Session {
   run::SessionOptions options;
   Watcher watcher;
 
-  Session(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress)
+  Session(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress,
+          const Functions& observers)
       : in_use(dir), folder(dir, run::run_work), watcher(std::move(progress)) {
     if (threads && *threads < 1) throw UserError("threads is {}; it must be at least 1", *threads);
     options.threads = threads;
     options.keep_every_wall_s = checkpoint_every_s;
+    options.observers = observers_of(observers, watcher);
   }
 
   template <class Work>
@@ -103,8 +106,9 @@ struct Session {
 
 /// @param config  the case that was given, or that with another friction law
 void run_config(const input::CaseFile& given, const input::Case& config, const fs::path& dir, bool overwrite,
-                std::optional<int> threads, double checkpoint_every_s, nb::object progress) {
-  Session session(dir, threads, checkpoint_every_s, std::move(progress));
+                std::optional<int> threads, double checkpoint_every_s, nb::object progress,
+                const Functions& observers = {}) {
+  Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   session.folder.require_empty(overwrite);
   session.complete([&] {
     return at_its_place(given, [&] {
@@ -115,8 +119,9 @@ void run_config(const input::CaseFile& given, const input::Case& config, const f
 }
 
 void run_case(const input::CaseFile& given, const fs::path& dir, bool overwrite, std::optional<int> threads,
-              double checkpoint_every_s, nb::object progress) {
-  run_config(given, given.config(), dir, overwrite, threads, checkpoint_every_s, std::move(progress));
+              double checkpoint_every_s, nb::object progress, const Functions& observers) {
+  run_config(given, given.config(), dir, overwrite, threads, checkpoint_every_s, std::move(progress),
+             observers);
 }
 
 /// A function of Python as a law over arrays. It is called without Python's lock.
@@ -146,8 +151,9 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
   run_config(given, config, dir, false, 1, std::numeric_limits<double>::infinity(), std::move(progress));
 }
 
-void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress) {
-  Session session(dir, threads, checkpoint_every_s, std::move(progress));
+void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress,
+            const Functions& observers) {
+  Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
   session.complete(
       [&] { return run::resume(session.folder, nullptr, session.options, session.watcher.hooks()); });
@@ -325,11 +331,14 @@ void bind_cases(nb::module_& module) {
            nb::call_guard<nb::gil_scoped_release>(),
            "Of slow uniform sliding of the case's materials under its friction.")
       .def("run", &run_case, "dir"_a, "overwrite"_a, "threads"_a.none(), "checkpoint_every_s"_a,
-           "progress"_a.none(),
-           "Runs the case into a folder; progress(part, step, total) is called at times.");
+           "progress"_a.none(), "observers"_a,
+           "Runs the case into a folder; progress(part, step, total) is called at times, each of the "
+           "observers "
+           "with an InterfaceState at its interval, s.");
   module.def("run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "progress"_a.none(),
              "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].");
   module.def("resume", &resume, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
+             "observers"_a,
              "Goes on with the unfinished run of a folder; does nothing where it is complete.");
 }
 

@@ -51,14 +51,23 @@ bool Watcher::is_stopped() {
 }
 
 void Watcher::ask_python() {
-  const nb::gil_scoped_acquire locked;
   asked_ = Clock::now();
-  try {
+  in_python([this] {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (part_ != nullptr && !progress_.is_none()) progress_(part_, step_, total_);
+  });
+}
+
+void Watcher::in_python(const std::function<void()>& work) {
+  const nb::gil_scoped_acquire locked;
+  try {
+    work();
   } catch (const nb::python_error& error) {
     stopped_ = true;
     if (!error.matches(PyExc_KeyboardInterrupt)) raised_ = std::current_exception();
+  } catch (...) {
+    stopped_ = true;
+    raised_ = std::current_exception();
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <functional>
 
 #include "base/clock.hpp"
 #include "run/session.hpp"
@@ -27,6 +28,9 @@ class Watcher {
 
   /// Whether the run is to end; Python is asked once in a while.
   bool is_stopped();
+
+  /// Does work with Python's lock. What it throws ends the run and is kept for rethrow.
+  void in_python(const std::function<void()>& work);
 
  private:
   void ask_python();

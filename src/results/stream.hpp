@@ -10,7 +10,7 @@
 
 #include "files/checksum.hpp"
 #include "files/files.hpp"
-#include "motion/event.hpp"
+#include "motion/observers/event_output.hpp"
 #include "record/probes.hpp"
 #include "results/contents.hpp"
 #include "results/hdf5.hpp"
@@ -28,7 +28,7 @@ namespace slipfront::results {
 /// history.raw: per row time_s and each of record::history_fields [nodes];
 /// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; probes.raw, where there
 /// are probes: per row time_s and each of record::probe_fields [probes]; doubles as in memory.
-class ResultStream : public motion::EventObserver {
+class ResultStream : public motion::EventOutput {
  public:
   /// What the writer may hold at a time of blocks and snapshots that are not in their files yet; before more
   /// is handed to it, the steps wait. A snapshot that is larger by itself is handed over when the writer has

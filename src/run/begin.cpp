@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
-#include "motion/event.hpp"
+#include "motion/trigger_zone.hpp"
 #include "run/choices.hpp"
 
 namespace slipfront::run {

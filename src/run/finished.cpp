@@ -69,7 +69,7 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
     archive.close();
     const auto& event = result.event;
     if (event.energies.empty() || event.record.x_m != initial.common.tractions.x_m ||
-        !record::is_consistent(event.record) || event.end > motion::EventEnd::blow_up)
+        !record::is_consistent(event.record) || event.end > motion::EventEnd::observer)
       return false;
   } catch (const UserError&) {
     return false;

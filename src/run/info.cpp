@@ -12,6 +12,7 @@
 #include "base/clock.hpp"
 #include "input/friction_along_x.hpp"
 #include "mesh/node_columns.hpp"
+#include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
 #include "run/notes.hpp"

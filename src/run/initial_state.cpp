@@ -279,10 +279,12 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     auto& stepper = *with_ramp;
     const auto tilted = statics.shear_by(0);
     stepper.start(tilted, top_speed_m_per_s(config));
-    motion::RampRun ramp(stepper, tilted, config.loading, mu_s, top_speed_m_per_s(config),
-                         fastest_speed_m_per_s(config), initial.critical_shear_m);
+    motion::RampRun ramp(stepper,
+                         {tilted, config.loading, mu_s, top_speed_m_per_s(config),
+                          fastest_speed_m_per_s(config), initial.critical_shear_m},
+                         monitor);
     if (ramp_begins) ramp_begins(stepper, ramp);
-    initial.ramp = ramp.run(monitor);
+    initial.ramp = ramp.run();
     if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
     initial.common = initial.ramp->common;
     initial.spontaneous = initial.ramp->spontaneous;

@@ -9,8 +9,8 @@
 
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
-#include "motion/event.hpp"
 #include "motion/plain_stepper.hpp"
+#include "motion/ramp.hpp"
 #include "processes/processes.hpp"
 #include "run/loads.hpp"
 #include "statics/statics.hpp"

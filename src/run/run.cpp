@@ -11,6 +11,7 @@
 #include "base/per_node.hpp"
 #include "motion/distributed_stepper.hpp"
 #include "motion/stepper.hpp"
+#include "motion/trigger_zone.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/notes.hpp"
@@ -167,32 +168,35 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, Ini
 }
 
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
-                             motion::TimeStepper& stepper) {
+                             motion::TimeStepper& stepper, const motion::Monitor& monitor,
+                             motion::EventOutput* output, motion::Observers more) {
   const bool triggered =
       (is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened) ||
       (config.event == interface::EventKind::nucleation &&
        config.nucleation.form == interface::NucleationForm::overstress);
-  return {stepper,
-          event_state(config, initial),
-          static_coefficients(config, initial.mu_s),
-          {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
-          triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
-          config.time,
-          {config.output.history_interval_s, config.output.energy_interval_s,
-           snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s},
-          motion::halo_for(initial.mesh, config.fronts.l_star_m)};
+  const motion::EventSetup setup = {
+      .state = event_state(config, initial),
+      .mu_s = static_coefficients(config, initial.mu_s),
+      .waves = {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
+      .trigger = triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
+      .time = config.time,
+      .sampling = {config.output.history_interval_s, config.output.energy_interval_s,
+                   snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s},
+      .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m)};
+  return {stepper, setup, monitor, output, std::move(more)};
 }
 
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
-                const motion::Execution& execution) {
+                const motion::Execution& execution, motion::Observers more) {
   const auto stepper = started_stepper(config, initial, execution, nullptr);
-  return run_from(config, initial, *stepper, monitor);
+  return run_from(config, initial, *stepper, monitor, nullptr, std::move(more));
 }
 
 Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& stepper,
-                const motion::Monitor& monitor, motion::EventObserver* observer) {
+                const motion::Monitor& monitor, motion::EventOutput* output, motion::Observers more) {
   const auto start = Clock::now();
-  auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, observer));
+  auto event = begin_event(config, initial, stepper, monitor, output, std::move(more));
+  auto result = unmeasured(config, stepper, event.run());
   result.stepping_wall_s = seconds_since(start);
   measure(result, initial);
   return result;
@@ -220,7 +224,10 @@ std::string end_of_event(const Result& result) {
     case motion::EventEnd::interrupted:
       return fmt::format("interrupted at t = {:.4g} s", result.event.time_s);
     case motion::EventEnd::blow_up:
-      return result.event.blow_up;
+      return result.event.reason;
+    case motion::EventEnd::observer:
+      return fmt::format("an observer ended it at t = {:.4g} s: {}", result.event.time_s,
+                         result.event.reason);
     case motion::EventEnd::quiet:
       break;
   }
@@ -250,8 +257,7 @@ void measure(Result& result, const InitialState& initial) {
   const auto n_after = snapshots_after(config, result.event.time_s).size();
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const bool quiet = result.event.end == motion::EventEnd::quiet;
-  const bool ended_early = quiet || result.event.end == motion::EventEnd::blow_up ||
-                           result.event.end == motion::EventEnd::interrupted;
+  const bool ended_early = result.event.end != motion::EventEnd::end_time;
   if (ended_early && n_after > 0)
     result.warnings.push_back(
         fmt::format("{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,

@@ -70,9 +70,10 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, Ini
                                                   const motion::Execution& execution = {},
                                                   Processes* processes = nullptr);
 
-/// The event of a case, about to begin with a started stepper.
+/// The event of a case, about to begin with a started stepper; see motion::EventRun.
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
-                             motion::TimeStepper& stepper);
+                             motion::TimeStepper& stepper, const motion::Monitor& monitor,
+                             motion::EventOutput* output = nullptr, motion::Observers more = {});
 
 /// The case, the steps and an event, without fronts yet.
 Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
@@ -82,12 +83,14 @@ void measure(Result& result, const InitialState& initial);
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early; event.end says which.
 /// @param started  by start_event
-/// @param observer     takes samples and snapshots; without one the event keeps them
+/// @param output  takes samples and snapshots; without one the event keeps them
+/// @param more    further observers
 Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& started,
-                const motion::Monitor& monitor, motion::EventObserver* observer = nullptr);
+                const motion::Monitor& monitor, motion::EventOutput* output = nullptr,
+                motion::Observers more = {});
 /// Starts the event as well, and leaves the initial state as it is.
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
-                const motion::Execution& execution = {});
+                const motion::Execution& execution = {}, motion::Observers more = {});
 
 /// Why an event ended, in words.
 std::string end_of_event(const Result& result);

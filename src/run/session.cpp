@@ -52,6 +52,7 @@ class Session {
   InitialState initial_state(Checkpoints::Checkpoint* kept);
   void begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp);
   void begin_event(Checkpoints::Checkpoint* kept);
+  void emplace_event();
   /// Between linear solutions. @return whether the run goes on
   bool look_at_statics();
   /// Between steps. @return whether the run goes on
@@ -118,9 +119,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
       begin_event(nullptr);
     }
     kept.reset();
-    return finish(event_->run(
-        [&](std::int64_t step, std::int64_t total) { return look("event", step, total, stepper_->time_s()); },
-        &*stream_));
+    return finish(event_->run());
   } catch (const Interrupted& error) {
     fail("interrupted", error.what());
     if (!began_) throw;
@@ -177,23 +176,24 @@ void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper
 
 void Session::begin_event(Checkpoints::Checkpoint* kept) {
   if (kept != nullptr) {
-    results::ResultStream::Extents extents;
     read_rest(*kept, [&](auto& rest) {
       initial_ = read_initial_state(rest, config_, options_.processes);
       const auto loads = loads_of_event(config_, initial_);
       event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
       read_motion(rest, *event_stepper_, loads);
-      event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
-      rest(*event_, extents);
+      results::ResultStream::Extents extents;
+      rest(extents);
+      stream_.emplace(folder_.state(), extents, !config_.probes.x_m.empty());
+      emplace_event();
+      rest(*event_);
     });
-    stream_.emplace(folder_.state(), extents, !config_.probes.x_m.empty());
   } else {
     files::remove_file(results::ResultStream::history_file(folder_.state()));
     files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
     files::remove_file(results::ResultStream::probe_file(folder_.state()));
     stream_.emplace(folder_.state(), !config_.probes.x_m.empty());
     event_stepper_ = start_event(config_, initial_, event_execution(), options_.processes);
-    event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
+    emplace_event();
   }
   write_static(dir_, config_, initial_);
   began_ = true;
@@ -201,6 +201,13 @@ void Session::begin_event(Checkpoints::Checkpoint* kept) {
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
   write_progress();
+}
+
+void Session::emplace_event() {
+  event_.emplace(run::begin_event(
+      config_, initial_, *event_stepper_,
+      [&](std::int64_t step, std::int64_t total) { return look("event", step, total, stepper_->time_s()); },
+      &*stream_, options_.observers ? options_.observers() : motion::Observers{}));
 }
 
 bool Session::look_at_statics() {
@@ -231,7 +238,7 @@ void Session::keep() {
     if (head.in_event) archive(initial_);
     write_motion(archive, *stepper_);
     if (head.in_event)
-      archive(*event_, extents);
+      archive(extents, *event_);
     else
       archive(*ramp_);
   });
@@ -358,7 +365,7 @@ std::string how_to_resume(const results::ResultFolder& folder) {
 
 void require_came_to_end(const Result& result, const results::ResultFolder& folder) {
   const auto& event = result.event;
-  if (event.end == motion::EventEnd::blow_up) throw BlowUp(event.blow_up + "; " + what_was_kept(folder));
+  if (event.end == motion::EventEnd::blow_up) throw BlowUp(event.reason + "; " + what_was_kept(folder));
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted at t = {:.4g} s; {}", event.time_s, how_to_resume(folder)));
 }

@@ -24,6 +24,8 @@ struct SessionOptions {
   double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
   double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
   std::optional<std::string> shared_states;                       ///< folder of SharedStates, see there
+  /// Makes further observers of the event, where it begins and where it goes on.
+  std::function<motion::Observers()> observers;
   Processes* processes = nullptr;  ///< that share the event with this one; the others are in run::serve
 };
 

@@ -40,6 +40,8 @@ const char* name(motion::EventEnd end) {
       return "interrupted";
     case motion::EventEnd::blow_up:
       return "blow_up";
+    case motion::EventEnd::observer:
+      return "observer";
   }
   return "";
 }
@@ -205,7 +207,7 @@ Json about(const input::Case& config, const Status& status) {
 Json run_json(const Result& result, const InitialState& initial, const Status& status) {
   const auto& event = result.event;
   auto warnings = result.warnings;
-  if (!event.blow_up.empty()) warnings.push_back(event.blow_up);
+  if (!event.reason.empty()) warnings.push_back(event.reason);
   Json json = about(result.config, status);
   const bool ended = status.name != "running";
   json["end"] = ended ? Json(name(event.end)) : Json();
@@ -254,7 +256,7 @@ void write_json(const std::filesystem::path& dir, const Json& json) {
 
 Status status_of(const Result& result) {
   const auto& event = result.event;
-  if (event.end == motion::EventEnd::blow_up) return {"blew_up", event.blow_up};
+  if (event.end == motion::EventEnd::blow_up) return {"blew_up", event.reason};
   if (event.end == motion::EventEnd::interrupted)
     return {"interrupted", fmt::format("interrupted at t = {:.4g} s", event.time_s)};
   return {};

@@ -24,7 +24,7 @@ std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, cons
     run.main.options = run::front_options(cases[k], initial);
     run.end = r.event.end;
     if (run.end == motion::EventEnd::blow_up)
-      run.blow_up = r.event.blow_up;
+      run.blow_up = r.event.reason;
     else
       run.main.fronts = main_fronts(r.fronts);
     run.node_updates_per_s = r.node_updates_per_step / r.step_s;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <optional>
 
 #include "files/checksum.hpp"
 #include "fuzz.hpp"
@@ -93,16 +94,17 @@ std::string checkpoint_of(const input::Case& config) {
   } else {
     auto initial = run::make_initial_state(config, stop);
     const auto stepper = run::start_event(config, initial);
-    auto event = run::begin_event(config, initial, *stepper);
     head.in_event = true;
-    event.run([&](std::int64_t, std::int64_t) {
+    std::optional<motion::EventRun> event;
+    event.emplace(run::begin_event(config, initial, *stepper, [&](std::int64_t, std::int64_t) {
       checkpoints.keep(head, [&](results::OutputArchive& archive) {
         archive(initial);
         run::write_motion(archive, *stepper);
-        archive(event, results::ResultStream::Extents{});
+        archive(results::ResultStream::Extents{}, *event);
       });
       return false;
-    });
+    }));
+    event->run();
   }
   auto content = content_of(scratch.dir() / file_name);
   fuzz::require(content.size() > sum_digits, "the run is over before its first checkpoint");
@@ -117,11 +119,11 @@ void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
     const auto loads = run::loads_of_event(config, initial);
     const auto stepper = run::make_stepper(config, initial);
     run::read_motion(kept.rest, *stepper, loads);
-    auto event = run::begin_event(config, initial, *stepper);
+    auto event = run::begin_event(config, initial, *stepper, stop);
     results::ResultStream::Extents extents;
-    kept.rest(event, extents);
+    kept.rest(extents, event);
     kept.rest.close();
-    event.run(stop);
+    event.run();
   } else {
     run::make_initial_state(config, stop, {}, [&](motion::Stepper& stepper, motion::RampRun& ramp) {
       run::read_motion(kept.rest, stepper, {});

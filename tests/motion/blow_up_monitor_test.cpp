@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/blow_up_monitor.hpp"
+#include "motion/observers/blow_up_monitor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "interface/friction/coulomb.hpp"
+#include "motion/observers/onsets.hpp"
 #include "motion/support.hpp"
 #include "statics/prestress.hpp"
+#include "support/state.hpp"
 
 namespace slipfront::motion {
 namespace {
@@ -34,7 +36,17 @@ class Monitored : public ::testing::Test {
   std::string failure(const record::Energies& start, const record::Energies& now, double t_Pa = 0,
                       double step_factor = 0.9) {
     Stepper stepper = pressed(t_Pa, step_factor);
-    return BlowUpMonitor(stepper, c_L_, start, 0).failure(&now);
+    BlowUpMonitor monitor(stepper, c_L_, Precision::double_precision, start);
+    return failure(monitor, stepper, now);
+  }
+
+  static std::string failure(BlowUpMonitor& monitor, Stepper& stepper,
+                             const std::optional<record::Energies>& known) {
+    Pause pause(stepper, known);
+    monitor.at_pause(pause);
+    const auto end = monitor.end(pause);
+    EXPECT_TRUE(!end || end->why == EventEnd::blow_up);
+    return end ? end->reason : "";
   }
 };
 
@@ -65,13 +77,14 @@ TEST_F(Monitored, TheCouplingMayGiveATenthOfWhatIsSupplied) {
 
 TEST_F(Monitored, OverloadIsNotBlamedOnTheStep) {
   Stepper stepper = pressed(1e10);
-  BlowUpMonitor monitor(stepper, c_L_);
+  BlowUpMonitor monitor(stepper, c_L_, Precision::double_precision, stepper.energies());
   Recorder recorder(
       statics::prestressed(mesh_, {stepper.interface_state().u_y_m, stepper.interface_state().t_Pa,
                                    stepper.interface_state().p_Pa}),
       0.5, 0);
-  while (monitor.check(stepper.slip_rates()) && stepper.step() < 100) stepper.advance(recorder);
-  const auto message = blow_up_message(stepper, monitor.failure(nullptr));
+  while (monitor.after_step(stepper.now(), stepper.slip_rates()) && stepper.step() < 100)
+    stepper.advance(recorder);
+  const auto message = failure(monitor, stepper, {});
   EXPECT_THAT(message,
               HasSubstr("above c_L; the work of the loads accounts for the energy: reduce prestress.t_Pa"));
   EXPECT_THAT(message, Not(HasSubstr("step_factor")));
@@ -93,12 +106,27 @@ TEST_F(Monitored, AnUnstableStepIsBlamedWhateverTheEnergy) {
               HasSubstr("reduce time.step_factor"));
 }
 
-TEST_F(Monitored, GoesOnFromAnotherMonitor) {
+TEST_F(Monitored, LooksAtTheEnergyEveryHundredSteps) {
   Stepper stepper = pressed();
-  const BlowUpMonitor monitor(stepper, c_L_, {.strain = 3}, -40);
-  EXPECT_EQ(monitor.start().strain, 3);
-  EXPECT_EQ(monitor.checked_step(), -40);
-  EXPECT_EQ(monitor.steps_to_check(), 60);
+  BlowUpMonitor monitor(stepper, c_L_, Precision::double_precision, stepper.energies());
+  EXPECT_EQ(monitor.steps_to_pause({60, 1e-7}), 40);
+  Recorder recorder(
+      statics::prestressed(mesh_, {stepper.interface_state().u_y_m, stepper.interface_state().t_Pa,
+                                   stepper.interface_state().p_Pa}),
+      0.5, 0);
+  stepper.advance(recorder, 70, {});
+  EXPECT_THAT(failure(monitor, stepper, {}), IsEmpty());
+  EXPECT_EQ(monitor.steps_to_pause({70, 1e-7}), 30);
+  EXPECT_THAT(failure(monitor, stepper, stepper.energies()), IsEmpty());  // known for another purpose
+  EXPECT_EQ(monitor.steps_to_pause({70, 1e-7}), 100);
+
+  BlowUpMonitor restored(stepper, c_L_, Precision::double_precision, {});
+  test::copy_state(monitor, restored);
+  EXPECT_EQ(restored.steps_to_pause({70, 1e-7}), 100);
+  Pause pause(stepper);
+  restored.restored(pause);
+  BlowUpMonitor of_another(stepper, c_L_, Precision::double_precision, {.strain = 1});
+  EXPECT_THROW(of_another.restored(pause), StateError);
 }
 
 }  // namespace

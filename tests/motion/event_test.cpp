@@ -9,7 +9,9 @@
 
 #include "base/error.hpp"
 #include "interface/friction/coulomb.hpp"
+#include "motion/ramp.hpp"
 #include "motion/support.hpp"
+#include "motion/trigger_zone.hpp"
 #include "support/interruption.hpp"
 
 namespace slipfront::motion {
@@ -38,11 +40,12 @@ class EventRun : public ::testing::Test {
   Sampling sampling_;
   interface::Trigger none_;
 
-  Event run(const statics::Equilibrium& state, const Monitor& monitor = always,
-            EventObserver* observer = nullptr) {
+  Event run(const statics::Equilibrium& state, const Monitor& monitor = always, EventOutput* output = nullptr,
+            Observers more = {}) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
     stepper.start(state, 1e-6 * c_L_);
-    return run_event(stepper, state, mu_s, waves_, none_, time_, sampling_, 2, monitor, observer);
+    const EventSetup setup = {state, mu_s, waves_, none_, time_, sampling_, 2};
+    return motion::EventRun(stepper, setup, monitor, output, std::move(more)).run();
   }
   double step_s() { return Stepper(mesh_, material_, support::paper_law, time_).step_s(); }
 };
@@ -147,8 +150,8 @@ TEST_F(EventRun, EndsWhenItBlowsUp) {
   time_.end_s = 1;
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::blow_up);
-  EXPECT_THAT(event.blow_up, HasSubstr(fmt::format("the run blew up at step {} (t = ", event.steps)));
-  EXPECT_THAT(event.blow_up, HasSubstr("time.step_factor"));
+  EXPECT_THAT(event.reason, HasSubstr(fmt::format("the run blew up at step {} (t = ", event.steps)));
+  EXPECT_THAT(event.reason, HasSubstr("time.step_factor"));
   EXPECT_LT(event.steps, 1000);
   // Seen before the numbers are lost.
   for (const double slip : event.history.slip_m) ASSERT_TRUE(std::isfinite(slip));
@@ -161,7 +164,7 @@ TEST_F(EventRun, EndsWhenEnergyComesFromNowhere) {
   time_.end_s = 1;
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::blow_up);
-  EXPECT_THAT(event.blow_up, HasSubstr("the energy has grown to"));
+  EXPECT_THAT(event.reason, HasSubstr("the energy has grown to"));
   EXPECT_LT(event.time_s, 1);
 }
 
@@ -186,7 +189,7 @@ TEST_F(EventRun, SamplesAreSpacedAsAsked) {
 }
 
 /// Keeps what it is given, and may fail.
-class KeepingObserver : public EventObserver {
+class KeepingOutput : public EventOutput {
  public:
   void sample(const record::History& row) override {
     if (history_.time_s.size() == fails_after_) throw std::runtime_error("no room");
@@ -204,20 +207,20 @@ class KeepingObserver : public EventObserver {
   std::size_t fails_after_ = std::numeric_limits<std::size_t>::max();
 };
 
-TEST_F(EventRun, AnObserverIsGivenWhatTheEventWouldKeep) {
+TEST_F(EventRun, AnOutputIsGivenWhatTheEventWouldKeep) {
   sampling_.snapshot_times_s = {0, 10e-6, 10.001e-6, 33e-6, 1};
   const Event kept = run(calm_);
-  KeepingObserver observer;
-  const Event event = run(calm_, always, &observer);
+  KeepingOutput output;
+  const Event event = run(calm_, always, &output);
   EXPECT_TRUE(event.history.time_s.empty());
   EXPECT_TRUE(event.snapshots.empty());
   EXPECT_EQ(event.steps, kept.steps);
   ASSERT_GT(kept.history.time_s.size(), 10U);
-  EXPECT_EQ(observer.history_.time_s, kept.history.time_s);
+  EXPECT_EQ(output.history_.time_s, kept.history.time_s);
   for (const auto& field : record::history_fields)
-    EXPECT_EQ(observer.history_.*field.member, kept.history.*field.member) << field.name;
+    EXPECT_EQ(output.history_.*field.member, kept.history.*field.member) << field.name;
   ASSERT_EQ(kept.snapshots.size(), 4);  // the last time is not reached
-  ASSERT_EQ(observer.snapshots_.size(), 4);
+  ASSERT_EQ(output.snapshots_.size(), 4);
   EXPECT_EQ(kept.snapshots[0].time_s, 0);
   EXPECT_EQ(kept.snapshots[0].u_m.x, calm_.u_m.x);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -225,17 +228,17 @@ TEST_F(EventRun, AnObserverIsGivenWhatTheEventWouldKeep) {
     EXPECT_GE(kept.snapshots[k].time_s, asked_s);
     EXPECT_LT(kept.snapshots[k].time_s, asked_s + step_s());
     EXPECT_EQ(kept.snapshots[k].u_m.size(), static_cast<std::size_t>(mesh_.n_nodes()));
-    EXPECT_EQ(observer.snapshots_[k].time_s, kept.snapshots[k].time_s);
-    EXPECT_EQ(observer.snapshots_[k].u_m.x, kept.snapshots[k].u_m.x);
-    EXPECT_EQ(observer.snapshots_[k].v_m_per_s.y, kept.snapshots[k].v_m_per_s.y);
+    EXPECT_EQ(output.snapshots_[k].time_s, kept.snapshots[k].time_s);
+    EXPECT_EQ(output.snapshots_[k].u_m.x, kept.snapshots[k].u_m.x);
+    EXPECT_EQ(output.snapshots_[k].v_m_per_s.y, kept.snapshots[k].v_m_per_s.y);
   }
 }
 
-TEST_F(EventRun, AFailingObserverEndsTheEvent) {
-  KeepingObserver observer;
-  observer.fails_after_ = 5;
-  EXPECT_THROW(run(calm_, always, &observer), std::runtime_error);
-  EXPECT_EQ(observer.history_.time_s.size(), 5U);
+TEST_F(EventRun, AFailingOutputEndsTheEvent) {
+  KeepingOutput output;
+  output.fails_after_ = 5;
+  EXPECT_THROW(run(calm_, always, &output), std::runtime_error);
+  EXPECT_EQ(output.history_.time_s.size(), 5U);
 }
 
 TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
@@ -331,6 +334,14 @@ TEST(Halo, ReachesPastTheDistanceAhead) {
     EXPECT_EQ(halo_for(mesh, ahead_m), halo) << ahead_m;
 }
 
+Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, double top_speed_m_per_s,
+              double c_L_m_per_s, double expected_shear_m, const Monitor& monitor) {
+  const statics::Loading loading;
+  stepper.start(tilted, top_speed_m_per_s);
+  return RampRun(stepper, {tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m}, monitor)
+      .run();
+}
+
 TEST(Ramp, ReachesTheStaticStates) {
   // Under Coulomb's law, which does not weaken nodes that slip at the edges. The edge moves ten times faster
   // than the paper's, on a coarse mesh: inertia and damping change stresses by rho c v, 1e-3 of p at most.
@@ -344,7 +355,7 @@ TEST(Ramp, ReachesTheStaticStates) {
   time.interface_substeps = 1;
   Stepper stepper(mesh, material, {interface::Coulomb{.mu = mu_s}}, time);
   const double c_L = solid::longitudinal_speed_m_per_s(material), speed = 1e-5 * c_L;
-  const Ramp ramp = run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, always);
+  const Ramp ramp = run_ramp(stepper, tilted, speed, c_L, expected.shear_m, always);
   EXPECT_FALSE(ramp.interrupted);
   EXPECT_NEAR(ramp.common.shear_m / expected.shear_m, 1, 2e-3);
   EXPECT_EQ(ramp.common.peak_x_m, expected.peak_x_m);
@@ -358,17 +369,16 @@ TEST(Ramp, ReachesTheStaticStates) {
   }
 
   // It can be interrupted, and tells when mu_s is out of reach.
-  EXPECT_TRUE(run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, [](auto, auto) {
-                return false;
-              }).interrupted);
+  EXPECT_TRUE(
+      run_ramp(stepper, tilted, speed, c_L, expected.shear_m, [](auto, auto) { return false; }).interrupted);
   {
     const test::InterruptionAfter after(72);
-    const auto begun = run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m,
+    const auto begun = run_ramp(stepper, tilted, speed, c_L, expected.shear_m,
                                 [&](auto, auto) { return !after.is_wanted(); });
     EXPECT_TRUE(begun.interrupted);
     EXPECT_EQ(begun.steps, 73);
   }
-  EXPECT_THAT([&] { run_ramp(stepper, tilted, loading, mu_s, speed, c_L, 0.1 * expected.shear_m, always); },
+  EXPECT_THAT([&] { run_ramp(stepper, tilted, speed, c_L, 0.1 * expected.shear_m, always); },
               ::testing::ThrowsMessage<UserError>(
                   HasSubstr("the ramp does not bring t/p inside the interface to mu_s")));
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/recorder.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "fronts/front.hpp"
+#include "motion/observers/onsets.hpp"
 #include "motion/support.hpp"
+#include "support/state.hpp"
 
 namespace slipfront::motion {
 namespace {
@@ -153,16 +153,16 @@ TEST(Recorder, InitiallySlippingNodesHaveNoOnsetUntilTheySlipAnew) {
   auto before = at_rest();
   before.contact[2] = statics::Contact::slip;
   Recorder recorder(before, static_mu, 0);
-  EXPECT_EQ(recorder.n_slipping(), 1);
+  EXPECT_EQ(recorder.finder().n_slipping(), 1);
   auto s = unchanged();
   set(s, 2, 2, 2, 4, true);
   recorder.observe(0, s, false);
   set(s, 2, 1, 1, 4, false);
   recorder.observe(1, s, true);
-  EXPECT_EQ(recorder.n_slipping(), 0);
+  EXPECT_EQ(recorder.finder().n_slipping(), 0);
   set(s, 2, 3, 2, 4, true);
   recorder.observe(2, s, true);
-  EXPECT_EQ(recorder.n_slipping(), 1);
+  EXPECT_EQ(recorder.finder().n_slipping(), 1);
   recorder.observe(3, s, false);
   const auto record = recorder.record_until(3);
   ASSERT_EQ(record.stops.size(), 1);
@@ -177,7 +177,6 @@ TEST(Recorder, SeesTheMotionOfAnyNodeThatSlipsFasterThanCreep) {
   constexpr std::size_t n = 19;
   for (std::size_t node = 0; node < n; ++node) {
     Recorder recorder(at_rest(n, statics::Contact::slip), static_mu, 0, 0.01);
-    EXPECT_EQ(recorder.last_motion_s(), 0);
     interface::Interface s(n);
     const double sign = node % 2 == 0 ? -1 : 1;
     s.slipping.assign(n, 1);
@@ -185,14 +184,14 @@ TEST(Recorder, SeesTheMotionOfAnyNodeThatSlipsFasterThanCreep) {
     s.slipping[node] = 0;
     s.slip_rate_m_per_s[node] = 1;  // in the air
     recorder.observe(1, s, true);
-    EXPECT_EQ(recorder.last_motion_s(), 0) << node;
+    EXPECT_FALSE(recorder.seen().moves) << node;
     s.slipping[node] = 1;
     s.slip_rate_m_per_s[node] = sign * 0.011;
     recorder.observe(2, s, true);
-    EXPECT_EQ(recorder.last_motion_s(), 2) << node;
+    EXPECT_TRUE(recorder.seen().moves) << node;
     s.slip_rate_m_per_s[node] = sign * 0.009;
     recorder.observe(3, s, false);
-    EXPECT_EQ(recorder.last_motion_s(), 2) << node;
+    EXPECT_FALSE(recorder.seen().moves) << node;
   }
 }
 
@@ -334,62 +333,24 @@ TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
   }
 }
 
-/// Writes numbers, vectors and what serializes itself to a list, or reads them from it.
-template <bool reads>
-class NumberList {
- public:
-  using is_loading = std::bool_constant<reads>;
-  explicit NumberList(std::vector<double>& numbers) : numbers_(numbers) {}
-  template <class... T>
-  void operator()(T&... values) {
-    (take(values), ...);
-  }
-
- private:
-  template <class T>
-  void take(T& value) {
-    if constexpr (requires { value.serialize(*this); }) {
-      value.serialize(*this);
-    } else if constexpr (requires { value.resize(1); }) {
-      auto size = static_cast<double>(value.size());
-      take(size);
-      value.resize(static_cast<std::size_t>(size));
-      for (auto& element : value) take(element);
-    } else if constexpr (reads) {
-      value = static_cast<T>(numbers_.at(next_++));
-    } else {
-      numbers_.push_back(static_cast<double>(value));
-    }
-  }
-  std::vector<double>& numbers_;
-  std::size_t next_ = 0;
-};
-
 TEST(Recorder, GoesOnFromWhatItHasWritten) {
   for (const int stop : {0, 100}) {
     RandomSlip slip(7);
     Recorder whole(slip.before, static_mu, 2), second(slip.before, static_mu, 2);
     for (int step = 0; step < 600; ++step) {
       if (step == stop) {
-        std::vector<double> numbers;
-        NumberList<false> writer(numbers);
-        whole.serialize(writer);
-        NumberList<true> reader(numbers);
-        second.serialize(reader);
+        test::copy_state(whole, second);
       }
       slip.advance(step);
       whole.observe(step, slip.state, true);
       if (step >= stop) second.observe(step, slip.state, true);
     }
     auto a = whole.record_until(600), b = second.record_until(600);
-    std::vector<double> of_a, of_b;
-    NumberList<false> write_a(of_a), write_b(of_b);
-    a.serialize(write_a);
-    b.serialize(write_b);
-    ASSERT_EQ(of_a.size(), of_b.size());
-    for (std::size_t k = 0; k < of_a.size(); ++k) expect_same(of_a[k], of_b[k]);
-    EXPECT_EQ(whole.n_slipping(), second.n_slipping());
-    EXPECT_EQ(whole.last_motion_s(), second.last_motion_s());
+    test::MemoryArchive of_a, of_b;
+    of_a(a);
+    of_b(b);
+    EXPECT_EQ(of_a.content(), of_b.content());
+    EXPECT_EQ(whole.finder().n_slipping(), second.finder().n_slipping());
   }
 }
 

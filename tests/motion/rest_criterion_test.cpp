@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/rest_criterion.hpp"
+#include "motion/observers/rest_criterion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ class QuietRule : public ::testing::Test {
   Stepper stepper_{mesh_, material_, support::paper_law, {}};
   double mass_kg_ = std::reduce(stepper_.plate().mass_kg.begin(), stepper_.plate().mass_kg.end());
   /// Slip rates are small below 1 mm/s.
-  RestCriterion rest_criterion_{stepper_, 1, 0};
+  RestCriterion rest_criterion_{stepper_, 1, 0, 1};
 };
 
 TEST_F(QuietRule, SlipThatGrowsIsNotQuietHoweverSlow) {
@@ -54,7 +54,7 @@ TEST_F(QuietRule, WavesTooWeakForTheStrengthDoNotCount) {
 }
 
 TEST_F(QuietRule, CountsFromTheLastChangeOfTheTrigger) {
-  RestCriterion triggered(stepper_, 1, 5);
+  RestCriterion triggered(stepper_, 1, 5, 1);
   triggered.see_slip_rate(1, 1);
   EXPECT_EQ(triggered.since_s(), 5);
 }

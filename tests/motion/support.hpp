@@ -8,6 +8,7 @@
 #include "interface/friction/velocity_weakening.hpp"
 #include "motion/event.hpp"
 #include "motion/stepper.hpp"
+#include "motion/trigger_zone.hpp"
 #include "support/plate.hpp"
 
 namespace slipfront::motion::support {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
-#include "motion/recorder.hpp"
+#include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
 #include "motion/support.hpp"
 #include "statics/prestress.hpp"

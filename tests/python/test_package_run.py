@@ -150,6 +150,69 @@ def test_progress_is_told_and_its_error_ends_the_run(tmp_path):
         slipfront.run(write_case(tmp_path), progress=fail)
 
 
+def test_observers_are_shown_the_interface(tmp_path):
+    case, seen, kept = write_case(tmp_path), [], []
+
+    def look(state):
+        seen.append((state.step, state.time_s))
+        kept.append(state.slip_m)
+        assert repr(state).startswith(f"<interface at step {state.step}, t = ")
+        for field in (state.x_m, state.slip_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa):
+            assert len(field) == len(state.x_m)
+            assert not field.flags.owndata  # no copy
+            with pytest.raises(ValueError, match="read-only"):
+                field[0] = 0
+
+    run = slipfront.run(
+        case, {"output.history_interval_s": 2e-6}, output=tmp_path / "out", observers=[(2e-6, look)]
+    )
+    assert np.array_equal([time_s for _, time_s in seen], run.history.time_s)
+    assert np.array_equal(kept, run.history.slip_m)
+    plain = slipfront.run(case, {"output.history_interval_s": 2e-6}, output=tmp_path / "plain")
+    require_same_bytes(tmp_path / "out", tmp_path / "plain", *SAME_FILES)
+    assert plain.info["end"] == run.info["end"]
+
+
+def test_an_observer_ends_the_event(tmp_path):
+    run = slipfront.run(
+        write_case(tmp_path), observers=[(0, lambda state: "enough" if state.step == 7 else None)]
+    )
+    assert run.status == "complete"
+    assert run.info["end"] == "observer"
+    assert run.info["steps"] == 8
+    assert run.info["end_reason"].endswith(": enough")
+
+
+def test_an_error_of_an_observer_keeps_a_checkpoint(tmp_path):
+    case, shown = write_case(tmp_path), []
+
+    def fail(state):
+        shown.append(state.time_s)
+        if len(shown) == 5:
+            raise ZeroDivisionError("of the caller")
+
+    with pytest.raises(ZeroDivisionError, match="of the caller"):
+        slipfront.run(case, output=tmp_path / "out", observers=[(2e-6, fail)])
+    assert slipfront.open(tmp_path / "out").status == "interrupted"
+    run = slipfront.resume(tmp_path / "out", observers=[(2e-6, fail)])
+    assert run.info["sessions"] == 2
+    assert all(a < b for a, b in zip(shown, shown[1:], strict=False))
+    slipfront.run(case, output=tmp_path / "plain")
+    require_same_bytes(tmp_path / "out", tmp_path / "plain", *SAME_FILES)
+
+
+def test_observers_that_are_none(tmp_path):
+    case = write_case(tmp_path)
+    for observers, text in (
+        ([print], "observers has <built-in function print>"),
+        ([(1e-6, 2)], "observers has (1e-06, 2); give pairs"),
+        ([(-1, print)], "the interval of an observer is -1"),
+        ([(0, lambda state: 3)], "an observer returned 3; it returns None, or why"),
+        ([(0, lambda state: "")], "an observer returned ''; it returns None, or why"),
+    ):
+        assert text in refused(lambda observers=observers: slipfront.run(case, observers=observers))
+
+
 def test_other_threads_go_on_meanwhile(tmp_path):
     """Another thread interrupts a long run from within; with Python's lock held it could not."""
 

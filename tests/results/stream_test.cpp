@@ -10,6 +10,7 @@
 #include "histories.hpp"
 #include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
+#include "motion/stepper.hpp"
 #include "results/hdf5.hpp"
 #include "results/history.hpp"
 #include "results/snapshots.hpp"

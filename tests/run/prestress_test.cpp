@@ -52,7 +52,7 @@ TEST(PrestressColumn, BelowTheStrengthNothingMoves) {
     c.prestress = {0.499e6, 1e6, ""};
     c.time.end_s = 50e-6;
     const auto result = run_case(c);
-    EXPECT_EQ(result.event.end, motion::EventEnd::end_time) << result.event.blow_up;
+    EXPECT_EQ(result.event.end, motion::EventEnd::end_time) << result.event.reason;
     EXPECT_TRUE(result.event.record.onsets.empty());
     for (const double s : result.event.history.slip_m) EXPECT_EQ(s, 0);
     for (const double t : result.event.history.t_Pa) EXPECT_NEAR(t, 0.499e6, 1e-9 * 1e6);

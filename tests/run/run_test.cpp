@@ -20,6 +20,7 @@
 #include "fronts/measures.hpp"
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/slip_weakening.hpp"
+#include "motion/trigger_zone.hpp"
 
 namespace slipfront::run {
 namespace {

@@ -176,7 +176,7 @@ TEST_F(WrittenRun, SummaryTellsHowTheRunEnded) {
     const test::TemporaryFolder folder;
     auto result = s.result;
     result.event.end = end;
-    if (end == motion::EventEnd::blow_up) result.event.blow_up = "blew up at step 7";
+    if (end == motion::EventEnd::blow_up) result.event.reason = "blew up at step 7";
     write(folder.path(), result, s.initial);
     const json run = json::parse(test::read_file(folder / "run.json"));
     EXPECT_EQ(run["end"], word);

@@ -33,6 +33,7 @@ ENDS = {
     "quiet": "nothing had slipped for time.quiet_s",
     "interrupted": "it was interrupted",
     "blow_up": "the motion blew up",
+    "observer": "an observer ended it",
 }
 DEFINITIONS = (
     "V<sub>tip</sub>: speed of the front's tip. t<sub>s</sub>, p<sub>s</sub>: tractions before the event; "

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/per_node.hpp"
-#include "motion/settings.hpp"
-#include "motion/time_stepper.hpp"
+#include "motion/observer.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::motion {
@@ -34,34 +30,36 @@ double slip_rate_scale_m_per_s(const statics::Equilibrium& state, const PerNode&
 
 /// Criterion of rest: nothing moves and nothing can (docs/numerics.md, End of an event). Times are those of
 /// the event, s.
-class RestCriterion {
+class RestCriterion final : public Observer {
  public:
-  /// @param from_s  the loads of the trigger change until then
-  RestCriterion(const TimeStepper& stepper, double slip_rate_scale_m_per_s, double from_s);
+  /// @param from_s   the loads of the trigger change until then
+  /// @param quiet_s  after so long without motion the event ends
+  RestCriterion(const TimeStepper& stepper, double slip_rate_scale_m_per_s, double from_s, double quiet_s);
+
+  void at_update(const SlipUpdate& seen) override;
+  bool after_step(const Now& now, const SlipRates& rates) override;
+  std::int64_t guaranteed_steps(const Now& now) const override;
+  void at_pause(Pause& pause) override;
+  std::optional<End> end(Pause& pause) override;
 
   /// After each step: the fastest slip, to see whether it grows.
   void see_slip_rate(double time_s, double fastest_m_per_s);
   /// Where the kinetic energy is known. J/m
   void see_kinetic_energy(double time_s, double kinetic_J_per_m);
-
   /// Since when there has been nothing of all this.
   double since_s() const { return since_s_; }
 
-  /// Whether all that it knows can be known at a time; its trigger may yet act.
-  bool is_possible_at(double time_s) const {
-    return since_s_ >= from_s_ && since_s_ <= std::max(time_s, from_s_) && slowest_m_per_s_ >= 0 &&
-           std::isfinite(slowest_m_per_s_) && largest_kinetic_J_per_m_ >= 0 &&
-           std::isfinite(largest_kinetic_J_per_m_);
-  }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
+  const char* name() const override { return "rest"; }
+  void archive(StateArchive& archive) override {
     archive(since_s_, slowest_m_per_s_, largest_kinetic_J_per_m_);
   }
+  void restored(Pause& pause) override;
 
  private:
+  bool is_at_rest(const Now& now) const { return now.time_s() - since_s_ > quiet_s_; }
+
   double negligible_kinetic_J_per_m_;
-  double from_s_, since_s_;
+  double from_s_, quiet_s_, since_s_;
   double slowest_m_per_s_ = 0;  ///< the least of the fastest slip rates since then
   double largest_kinetic_J_per_m_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/blow_up_monitor.hpp"
+#include "motion/observers/blow_up_monitor.hpp"
 
 #include <fmt/core.h>
 
@@ -54,15 +54,7 @@ const char* strongest_load(const record::Energies& now, const record::Energies& 
 
 }  // namespace
 
-BlowUpMonitor::BlowUpMonitor(TimeStepper& stepper, double c_L_m_per_s)
-    : BlowUpMonitor(stepper, c_L_m_per_s, stepper.energies(), 0) {}
-
-BlowUpMonitor::BlowUpMonitor(TimeStepper& stepper, double c_L_m_per_s, const record::Energies& start,
-                             std::int64_t checked_step)
-    : stepper_(stepper), c_L_m_per_s_(c_L_m_per_s), start_(start), checked_step_(checked_step) {}
-
-bool BlowUpMonitor::check(const SlipRates& rates) {
-  fastest_slip_m_per_s_ = rates.fastest_slipping_m_per_s;
+bool BlowUpMonitor::after_step(const Now& /*now*/, const SlipRates& rates) {
   if (!rates.finite) {
     failure_ = "the slip rate is not a number";
   } else if (rates.fastest_m_per_s > c_L_m_per_s_) {
@@ -71,30 +63,38 @@ bool BlowUpMonitor::check(const SlipRates& rates) {
   return failure_.empty();
 }
 
-std::int64_t BlowUpMonitor::steps_to_check() const {
-  return checked_step_ + energy_check_interval - stepper_.step();
+std::int64_t BlowUpMonitor::steps_to_pause(const Now& now) const {
+  return checked_step_ + energy_check_interval - now.step;
 }
 
-bool BlowUpMonitor::is_possible(Precision precision) {
-  if (steps_to_check() <= 0) return false;
-  const auto now = stepper_.energies();
+void BlowUpMonitor::at_pause(Pause& pause) {
+  if (failure_.empty() && !pause.known_energies() && steps_to_pause(pause.now()) > 0) return;
+  checked_step_ = pause.now().step;
+  const auto& energies = pause.energies();
+  if (failure_.empty()) failure_ = energy_failure(energies);
+  if (!failure_.empty()) failure_ += "; " + remedy(energies);
+}
+
+std::optional<End> BlowUpMonitor::end(Pause& pause) {
+  if (failure_.empty()) return {};
+  return End{EventEnd::blow_up, fmt::format("the run blew up at step {} (t = {:.6g} s): {}", pause.now().step,
+                                            pause.now().time_s(), failure_)};
+}
+
+/// The motion is not to be checked yet, and its energies balance.
+void BlowUpMonitor::restored(Pause& pause) {
+  const auto step = pause.now().step;
+  require_possible(checked_step_ >= 0 && checked_step_ <= step && steps_to_pause(pause.now()) > 0, "steps");
+  const auto& now = pause.energies();
   double largest = 0;
   for (const auto& term : record::energy_terms)
     largest = std::max({largest, std::abs(now.*term.member), std::abs(start_.*term.member)});
   const double imbalance = std::abs(record::imbalance_J_per_m(now, start_));
-  return precision == Precision::single_precision
-             ? std::isfinite(imbalance)
-             : imbalance <=
-                   balance_tolerance * largest + negligible_part * stepper_.energy_of_tractions_J_per_m();
-}
-
-std::string BlowUpMonitor::failure(const record::Energies* known) {
-  if (failure_.empty() && known == nullptr && steps_to_check() > 0) return {};
-  checked_step_ = stepper_.step();
-  last_ = known != nullptr ? *known : stepper_.energies();
-  if (failure_.empty()) failure_ = energy_failure(*last_);
-  if (failure_.empty()) return {};
-  return failure_ + "; " + remedy(*last_);
+  require_possible(precision_ == Precision::single_precision
+                       ? std::isfinite(imbalance)
+                       : imbalance <= balance_tolerance * largest +
+                                          negligible_part * stepper_.energy_of_tractions_J_per_m(),
+                   "a motion");
 }
 
 std::string BlowUpMonitor::energy_failure(const record::Energies& now) const {
@@ -119,11 +119,6 @@ std::string BlowUpMonitor::remedy(const record::Energies& now) const {
                          is_from_nowhere(std::max(now.kinetic, now.stored()), now);
   if (numerical) return "reduce time.step_factor";
   return fmt::format("the work of the loads accounts for the energy: reduce {}", strongest_load(now, start_));
-}
-
-std::string blow_up_message(const TimeStepper& stepper, const std::string& failure) {
-  return fmt::format("the run blew up at step {} (t = {:.6g} s): {}", stepper.step(), stepper.time_s(),
-                     failure);
 }
 
 }  // namespace slipfront::motion

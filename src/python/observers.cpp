@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "python/observers.hpp"
+
+#include <nanobind/stl/string.h>
+
+#include <memory>
+#include <string>
+
+#include "base/error.hpp"
+#include "motion/observers/interval_observer.hpp"
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+
+namespace slipfront::python {
+namespace {
+
+namespace nb = nanobind;
+
+/// The interface at the beginning of a step.
+struct InterfaceState {
+  std::int64_t step = 0;
+  record::History row;
+};
+
+class FunctionObserver final : public motion::IntervalObserver {
+ public:
+  FunctionObserver(double interval_s, const nb::object& function, Watcher& watcher)
+      : IntervalObserver(interval_s), function_(function), watcher_(watcher) {}
+
+  std::string look(record::History& row, const motion::Now& now, motion::Pause& /*pause*/) override {
+    std::string reason;
+    watcher_.in_python([&] {
+      const nb::object told = function_(InterfaceState{now.step, std::move(row)});
+      if (told.is_none()) return;
+      if (!nb::isinstance<nb::str>(told) || nb::len(told) == 0)
+        throw UserError("an observer returned {}; it returns None, or why the event is to end, a text",
+                        nb::repr(told).c_str());
+      reason = nb::cast<std::string>(told);
+    });
+    return reason;
+  }
+
+ private:
+  const nb::object& function_;
+  Watcher& watcher_;
+};
+
+}  // namespace
+
+std::function<motion::Observers()> observers_of(const Functions& functions, Watcher& watcher) {
+  return [&functions, &watcher] {
+    motion::Observers list;
+    for (const auto& [interval_s, function] : functions)
+      list.push_back(std::make_unique<FunctionObserver>(interval_s, function, watcher));
+    return list;
+  };
+}
+
+void bind_observers(nb::module_& module) {
+  using S = InterfaceState;
+  const auto view = [](std::vector<double> record::History::*member) {
+    return [member](const S& state) {
+      const auto& values = state.row.*member;
+      return Array(values.data(), {values.size()}, nb::find(state));
+    };
+  };
+  nb::class_<S>(
+      module, "InterfaceState",
+      "The interface at the beginning of a step. Arrays [nodes] are views that cannot be written to; "
+      "they may be kept.")
+      .def_ro("step", &S::step, "steps done")
+      .def_prop_ro(
+          "time_s", [](const S& state) { return state.row.time_s.front(); }, "since the start of the event")
+      .def_prop_ro("x_m", view(&record::History::x_m), "position along the interface from the left edge")
+      .def_prop_ro("slip_m", view(&record::History::slip_m),
+                   "displacement of the plate along x relative to its base, since the start")
+      .def_prop_ro("slip_rate_m_per_s", view(&record::History::slip_rate_m_per_s),
+                   "velocity of the plate along x relative to its base")
+      .def_prop_ro("t_Pa", view(&record::History::t_Pa),
+                   "tangential traction, positive against sliding to +x")
+      .def_prop_ro("p_Pa", view(&record::History::p_Pa), "contact pressure, positive in compression");
+}
+
+}  // namespace slipfront::python

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Observers of one's own in the event of a case: the example's, and one with a state.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cases.hpp"
+#include "examples/downstream/slip_limit.hpp"
+#include "motion/observers/interval_observer.hpp"
+#include "run/session.hpp"
+#include "support/files.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using test::coarse_case;
+using ::testing::HasSubstr;
+
+motion::Observers list_of(std::unique_ptr<motion::Observer> observer) {
+  motion::Observers list;
+  list.push_back(std::move(observer));
+  return list;
+}
+
+TEST(Observers, TheExampleEndsAnEventAtASlip) {
+  const auto config = coarse_case();
+  const auto initial = make_initial_state(config, test::go_on);
+  const auto whole = run_from(config, initial, test::go_on);
+  const auto& slip_m = whole.event.history.slip_m;
+  const double limit_m = 0.5 * *std::ranges::max_element(slip_m);
+  const auto result =
+      run_from(config, initial, test::go_on, {},
+               list_of(std::make_unique<SlipLimit>(limit_m, config.output.history_interval_s)));
+  EXPECT_EQ(result.event.end, motion::EventEnd::observer);
+  EXPECT_THAT(end_of_event(result), HasSubstr("slip has reached"));
+  // Up to there it is the same event: the last row of the history is the one that was looked at.
+  const auto& cut = result.event.history;
+  const auto n_nodes = static_cast<std::ptrdiff_t>(cut.x_m.size());
+  ASSERT_LT(cut.slip_m.size(), slip_m.size());
+  EXPECT_TRUE(std::equal(cut.slip_m.begin(), cut.slip_m.end(), slip_m.begin()));
+  EXPECT_GE(*std::max_element(cut.slip_m.end() - n_nodes, cut.slip_m.end()), limit_m);
+  EXPECT_LT(*std::max_element(cut.slip_m.begin(), cut.slip_m.end() - n_nodes), limit_m);
+}
+
+/// Counts steps and looks, for a test to read, and keeps the counts.
+class Counter final : public motion::IntervalObserver {
+ public:
+  struct Seen {
+    std::int64_t steps = 0, updates = 0, ends = 0;
+    std::vector<double> time_s;
+  };
+  explicit Counter(Seen& seen) : IntervalObserver(10e-6), seen_(seen) { seen_ = {}; }
+
+  void at_update(const motion::SlipUpdate& seen) override {
+    EXPECT_GT(seen.time_s, last_update_s_);
+    last_update_s_ = seen.time_s;
+    ++seen_.updates;
+  }
+  bool after_step(const motion::Now& now, const motion::SlipRates& rates) override {
+    EXPECT_EQ(now.step, ++seen_.steps);
+    EXPECT_TRUE(rates.finite);
+    return true;
+  }
+  std::string look(record::History& row, const motion::Now& now, motion::Pause& pause) override {
+    EXPECT_EQ(row.time_s, std::vector{now.time_s()});
+    EXPECT_EQ(now.step + 1, pause.stepper().step());
+    EXPECT_EQ(row.slip_m.size(), row.x_m.size());
+    seen_.time_s.push_back(now.time_s());
+    return {};
+  }
+  void at_end(motion::Pause& /*pause*/) override { ++seen_.ends; }
+  const char* name() const override { return "counter"; }
+  void archive(StateArchive& archive) override { archive(seen_.steps, seen_.updates, seen_.time_s); }
+
+ private:
+  Seen& seen_;
+  double last_update_s_ = -1;
+};
+
+TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
+  auto config = coarse_case(interface::EventKind::left);
+  config.time.quiet_s = 1;
+  const auto run = [&](const std::filesystem::path& dir, std::int64_t stop_at, bool goes_on,
+                       const std::function<motion::Observers()>& observers) {
+    results::ResultFolder folder(dir, run_work);
+    std::int64_t at = 0;
+    const SessionHooks hooks{[&](const char* part, std::int64_t step, std::int64_t) {
+                               at = std::string(part) == "event" ? step : 0;
+                             },
+                             [&] { return at >= stop_at ? Request::stop : Request::none; },
+                             [](const std::string&) {}};
+    SessionOptions options;
+    options.threads = 2;
+    options.observers = observers;
+    return goes_on ? resume(folder, nullptr, options, hooks) : run_into(folder, config, options, hooks);
+  };
+  constexpr std::int64_t never = 1'000'000'000;
+  const test::TemporaryFolder plain, observed;
+  const auto expected = run(plain.path(), never, false, {});
+  Counter::Seen seen;
+  const auto observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
+  run(observed.path(), 150, false, observers);
+  EXPECT_EQ(seen.ends, 1);
+  EXPECT_EQ(seen.steps, 150);
+  const auto result = run(observed.path(), never, true, observers);
+  EXPECT_EQ(seen.ends, 1);  // of the second session
+  EXPECT_EQ(seen.steps, expected.result.event.steps);
+  EXPECT_EQ(seen.updates, seen.steps * config.time.interface_substeps);
+  ASSERT_EQ(std::ssize(seen.time_s), static_cast<std::ptrdiff_t>(expected.result.event.time_s / 10e-6) + 1);
+  for (std::size_t k = 0; k < seen.time_s.size(); ++k) {
+    EXPECT_GE(seen.time_s[k], 10e-6 * static_cast<double>(k));
+    EXPECT_LT(seen.time_s[k], 10e-6 * static_cast<double>(k) + result.result.step_s);
+  }
+  for (const char* file : {"interface.h5", "fronts.csv", "energy.csv"})
+    EXPECT_EQ(test::read_file(plain / file), test::read_file(observed / file)) << file;
+}
+
+TEST(Observers, ACheckpointIsOfTheObserversThatKeptIt) {
+  const auto config = coarse_case();
+  const test::TemporaryFolder dir;
+  Counter::Seen seen;
+  SessionOptions options;
+  options.observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
+  std::int64_t at = 0;
+  const SessionHooks hooks{[&](const char*, std::int64_t step, std::int64_t) { at = step; },
+                           [&] { return at >= 100 ? Request::stop : Request::none; },
+                           [](const std::string&) {}};
+  results::ResultFolder folder(dir.path(), run_work);
+  run_into(folder, config, options, hooks);
+  options.observers = {};
+  EXPECT_THAT(test::error_of([&] { resume(folder, nullptr, options, hooks); }),
+              HasSubstr("has observers of"));
+}
+
+}  // namespace
+}  // namespace slipfront::run
