@@ -14,6 +14,41 @@ from numpy.typing import NDArray
 def version() -> str:
     """Version and commit that the module was built from."""
 
+class InterfaceState:
+    """
+    The interface at the beginning of a step. Arrays [nodes] are views that cannot be written to; they may be kept.
+    """
+
+    @property
+    def step(self) -> int:
+        """steps done"""
+
+    @property
+    def time_s(self) -> float:
+        """since the start of the event"""
+
+    @property
+    def x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """position along the interface from the left edge"""
+
+    @property
+    def slip_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        displacement of the plate along x relative to its base, since the start
+        """
+
+    @property
+    def slip_rate_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """velocity of the plate along x relative to its base"""
+
+    @property
+    def t_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """tangential traction, positive against sliding to +x"""
+
+    @property
+    def p_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """contact pressure, positive in compression"""
+
 class WaveSpeeds:
     """Wave speeds of a material."""
 
@@ -312,9 +347,9 @@ class Case:
     def well_posedness(self, pressure_Pa: float, element_size_m: float, longest_wavelength_m: float) -> WellPosedness:
         """Of slow uniform sliding of the case's materials under its friction."""
 
-    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None) -> None:
+    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
         """
-        Runs the case into a folder; progress(part, step, total) is called at times.
+        Runs the case into a folder; progress(part, step, total) is called at times, each of the observers with an InterfaceState at its interval, s.
         """
 
 def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, progress: object | None) -> None:
@@ -322,7 +357,7 @@ def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, progress: ob
     Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].
     """
 
-def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None) -> None:
+def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
     """
     Goes on with the unfinished run of a folder; does nothing where it is complete.
     """

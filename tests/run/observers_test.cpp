@@ -102,9 +102,9 @@ TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
   const auto expected = run(plain.path(), never, false, {});
   Counter::Seen seen;
   const auto observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
-  run(observed.path(), 150, false, observers);
+  run(observed.path(), 50, false, observers);
   EXPECT_EQ(seen.ends, 1);
-  EXPECT_EQ(seen.steps, 150);
+  EXPECT_EQ(seen.steps, 50);
   const auto result = run(observed.path(), never, true, observers);
   EXPECT_EQ(seen.ends, 1);  // of the second session
   EXPECT_EQ(seen.steps, expected.result.event.steps);
@@ -126,7 +126,7 @@ TEST(Observers, ACheckpointIsOfTheObserversThatKeptIt) {
   options.observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
   std::int64_t at = 0;
   const SessionHooks hooks{[&](const char*, std::int64_t step, std::int64_t) { at = step; },
-                           [&] { return at >= 100 ? Request::stop : Request::none; },
+                           [&] { return at >= 50 ? Request::stop : Request::none; },
                            [](const std::string&) {}};
   results::ResultFolder folder(dir.path(), run_work);
   run_into(folder, config, options, hooks);
