@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double mu_s = 1.3;
+using support::mu_s;
 
 /// Notes calls by its letter, pauses at an interval of steps, and may end the run or stop a sweep.
 class Noting final : public Observer {
