@@ -161,12 +161,12 @@ TEST_F(QuickReproduction, WritesAllOfItAndTheSameForAnyNumberOfThreads) {
   EXPECT_GT(expected.size(), 5 * run_folders().size());  // five files a run, and those of the whole
   const TemporaryFolder folder;
   fs::create_directories(folder / "spontaneous");
-  std::string list;
+  std::string earlier;
   for (const char* file : {"scorecard.json", "spontaneous/fronts.csv"}) {
     test::write_file(folder / file, "old");
-    list += files::sha256("old") + "  " + file + "\n";
+    earlier += files::sha256("old") + "  " + file + "\n";
   }
-  test::write_file(folder / files::checksum_list, list);
+  test::write_file(folder / files::checksum_list, earlier);
   for (const char* file : {"notes.txt", "spontaneous/notes.txt"}) test::write_file(folder / file, "mine");
   reproduce(quick(folder.path(), 1, true), go_on);
   auto files = reproducible_files(folder.path());
