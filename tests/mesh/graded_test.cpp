@@ -19,7 +19,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-
 /// 40 x 30 columns and rows of 1 mm; coarsened once or twice above 6 mm.
 Plate graded(Corner corner, int coarsenings) {
   auto plate = test::plate_of(0.04, 0.03, 1e-3, corner);

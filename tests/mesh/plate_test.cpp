@@ -21,7 +21,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-
 Plate small_plate(Corner corner) {
   return test::plate_of(0.04, 0.02, 0.02 / 30, corner);
 }
