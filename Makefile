@@ -6,7 +6,7 @@ SHELL := bash
 
 APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv python3-dev \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
-  libhdf5-dev libboost-dev libcereal-dev libssl-dev libgtest-dev libgmock-dev
+  libhdf5-dev libboost-dev libssl-dev libgtest-dev libgmock-dev
 MPI_PACKAGES := libopenmpi-dev openmpi-bin libpetsc-real-dev
 SLURM_PACKAGES := slurm-wlm munge
 LINT_PACKAGES := clang-format-14 clang-tidy-14

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -30,17 +32,80 @@ inline void require_possible(bool is_possible, const char* what) {
   if (!is_possible) throw StateError("the saved state has {} of another case, or was changed", what);
 }
 
-/// Writes to or reads from an archive (cereal's, whose vectors the archive's owner includes) a vector of
-/// its present length. @throws StateError where one of another length is read, or of impossible values.
-template <class Archive, class T>
-void archive_vector(Archive& archive, std::vector<T>& values) {
+/// Where the state of work under way is written to, or read from: numbers as they are in memory. Whoever has
+/// a state lists its members once, for both: `archive(a, b)`. Types tell theirs by a template `serialize`.
+class StateArchive {
+ public:
+  StateArchive() = default;
+  StateArchive(const StateArchive&) = delete;
+  StateArchive& operator=(const StateArchive&) = delete;
+  virtual ~StateArchive() = default;
+
+  virtual bool is_loading() const = 0;
+  /// Writes so many bytes, or reads them.
+  virtual void bytes(void* data, std::size_t n) = 0;
+  /// Refuses a length that what is left to read cannot hold.
+  virtual void require(std::uint64_t count) const = 0;
+
+  template <class... T>
+  void operator()(T&&... members) {
+    (member(members), ...);
+  }
+
+ private:
+  /// Constants are written only.
+  template <class T>
+  void member(const T& value) {
+    SLIPFRONT_ASSERT(!is_loading(), "a constant is not read");
+    member(const_cast<T&>(value));
+  }
+  void member(std::string& text) {
+    std::vector<char> letters(text.begin(), text.end());
+    member(letters);
+    text.assign(letters.begin(), letters.end());
+  }
+  template <class T>
+  void member(std::optional<T>& value) {
+    bool is_there = value.has_value();
+    member(is_there);
+    if (is_loading()) value = is_there ? std::optional<T>(std::in_place) : std::nullopt;
+    if (value) member(*value);
+  }
+  template <class T>
+  void member(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      auto byte = static_cast<std::uint8_t>(value);
+      bytes(&byte, 1);
+      require_possible(byte <= 1, "flags");
+      value = byte != 0;
+    } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+      bytes(&value, sizeof(value));
+    } else {
+      value.serialize(*this);
+    }
+  }
+  template <class T>
+  void member(std::vector<T>& values) {
+    std::uint64_t count = values.size();
+    member(count);
+    if (is_loading()) {
+      require(count);
+      values.resize(count);
+    }
+    if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
+      bytes(values.data(), sizeof(T) * values.size());
+    else
+      for (auto& value : values) member(value);
+  }
+};
+
+/// A vector of known length. @throws StateError where one of another length is read, or of impossible values.
+template <class T>
+void archive_vector(StateArchive& archive, std::vector<T>& values) {
   const auto length = values.size();
   archive(values);
-  if (values.size() != length)
-    throw StateError("the saved state has {} values, this case has {}: it belongs to another case",
-                     values.size(), length);
-  if constexpr (Archive::is_loading::value)
-    require_possible(std::ranges::all_of(values, is_possible<T>), "numbers");
+  require_possible(values.size() == length, "numbers");
+  for (const auto& value : values) require_possible(!archive.is_loading() || is_possible(value), "numbers");
 }
 
 }  // namespace slipfront

@@ -78,11 +78,7 @@ class EventRun {
   record::SlipRecord record() const { return run_.get<Onsets>().record_until(stepper_.time_s()); }
 
   /// All that changes while the monitor is asked, but for the stepper and what an output would take.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    StateOfArchive state(archive);
-    run_.archive(state);
-  }
+  void serialize(StateArchive& archive) { run_.archive(archive); }
 
  private:
   Observers observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output, Observers more);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/state_archive.hpp"
+#include "base/state.hpp"
 #include "motion/every.hpp"
 #include "motion/slip_finder.hpp"
 #include "motion/time_stepper.hpp"

@@ -55,11 +55,7 @@ class RampRun {
   Ramp run();
 
   /// All that changes while the monitor is asked, but for the stepper.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    StateOfArchive state(archive);
-    run_.archive(state);
-  }
+  void serialize(StateArchive& archive) { run_.archive(archive); }
 
  private:
   Stepper& stepper_;

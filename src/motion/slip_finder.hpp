@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/per_node.hpp"
-#include "base/state_archive.hpp"
+#include "base/state.hpp"
 #include "interface/interface.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"

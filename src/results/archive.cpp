@@ -16,10 +16,7 @@ constexpr std::size_t sum_digits = 64;
 }  // namespace
 
 OutputArchive::OutputArchive(const std::filesystem::path& file)
-    : cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision>(this),
-      path_(file),
-      fresh_(file.string() + ".new"),
-      file_(files::OutputFile::replace(fresh_)) {
+    : path_(file), fresh_(file.string() + ".new"), file_(files::OutputFile::replace(fresh_)) {
   waiting_.reserve(buffer_bytes);
 }
 
@@ -27,10 +24,10 @@ OutputArchive::~OutputArchive() {
   if (!fresh_.empty()) files::try_to_remove(fresh_);
 }
 
-void OutputArchive::save(const void* data, std::size_t bytes) {
-  const std::span<const std::byte> piece(static_cast<const std::byte*>(data), bytes);
-  if (waiting_.size() + bytes > buffer_bytes) flush();
-  if (bytes > buffer_bytes) {
+void OutputArchive::bytes(void* data, std::size_t n) {
+  const std::span<const std::byte> piece(static_cast<const std::byte*>(data), n);
+  if (waiting_.size() + n > buffer_bytes) flush();
+  if (n > buffer_bytes) {
     sum_.add(piece);
     file_.write(piece);
   } else {
@@ -55,9 +52,7 @@ void OutputArchive::close() {
 }
 
 InputArchive::InputArchive(const std::filesystem::path& file)
-    : cereal::InputArchive<InputArchive, cereal::AllowEmptyClassElision>(this),
-      path_(file),
-      stream_(files::is_file(file) ? std::ifstream(file, std::ios::binary) : std::ifstream()) {
+    : path_(file), stream_(files::is_file(file) ? std::ifstream(file, std::ios::binary) : std::ifstream()) {
   if (!stream_.is_open()) throw UserError("{}: cannot be read; check that it is there", path_.string());
   std::error_code error;
   const auto length = std::filesystem::file_size(file, error);
@@ -78,17 +73,9 @@ InputArchive::InputArchive(const std::filesystem::path& file)
   stream_.seekg(0);
 }
 
-void InputArchive::load(void* data, std::size_t bytes) {
-  if (bytes > left_ || !stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes)))
-    throw_damaged();
-  left_ -= bytes;
-}
-
-void InputArchive::load(bool& flag) {
-  std::uint8_t byte = 0;
-  load(&byte, sizeof(byte));
-  if (byte > 1) throw_damaged();
-  flag = byte == 1;
+void InputArchive::bytes(void* data, std::size_t n) {
+  if (n > left_ || !stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(n))) throw_damaged();
+  left_ -= n;
 }
 
 void InputArchive::require(std::uint64_t count) const {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/state_archive.hpp"
+#include "base/state.hpp"
 
 namespace slipfront::test {
 
