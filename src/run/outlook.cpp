@@ -158,7 +158,8 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   o.trigger_length_m = trigger_length_m(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
-  if (const auto half_m = o.of_nodes.supershear_half_length_m; half_m && *half_m > config.plate.width_m)
+  if (const auto half_m = o.of_nodes.supershear_half_length_m;
+      half_m && *half_m > config.plate.width_m && stability::are_alike(bodies_of(config)))
     o.of_nodes.regime += "; that is beyond the interface";
   add_cautions(config, o);
   if (const auto n_beyond = n_beyond_strength(placed); n_beyond > 0 && 2 * n_beyond <= std::ssize(placed))
