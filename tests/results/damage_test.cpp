@@ -170,7 +170,7 @@ TEST_F(DamagedFiles, FlagsHoldNothingButTrueAndFalse) {
   };
   EXPECT_FALSE(read(0));
   EXPECT_TRUE(read(1));
-  EXPECT_EQ(error_of([&] { read(2); }), path.string() + ": is damaged or of another version");
+  EXPECT_EQ(error_of([&] { read(2); }), "the saved state has flags of another case, or was changed");
 }
 
 }  // namespace
