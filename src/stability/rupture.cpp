@@ -53,7 +53,7 @@ Pair pair_of(const Bodies& bodies) {
 
 /// Andrews's transition is that of equal bodies without damping.
 std::string supershear_regime(double half_length_m, Pair pair) {
-  const auto text = fmt::format(
+  auto text = fmt::format(
       "S < 1.77: fronts above c_S can form, {}about {:.2g} m from a nucleation of the critical length on, "
       "sooner "
       "from a longer one",
