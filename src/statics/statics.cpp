@@ -511,6 +511,23 @@ Equilibrium Statics::shear_by(double shear_m) const {
   return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; });
 }
 
+Equilibrium Statics::shear_to_first() const {
+  constexpr double accuracy = 1e-6, step_down = 1e-3;
+  const auto from_tilt = [&](double shear_m) {
+    last_.reset();
+    return shear_by(shear_m);
+  };
+  const auto is_below = [&](const Equilibrium& e) { return e.peak_ratio < ratio_at_peak(e, 1); };
+  auto critical = shear_to(1);
+  double high_m = (1 - step_down) * critical.shear_m, low_m = 0;
+  if (is_below(from_tilt(high_m))) return critical;
+  while (high_m - low_m > accuracy * high_m) {
+    const double middle_m = 0.5 * (low_m + high_m);
+    (is_below(from_tilt(middle_m)) ? low_m : high_m) = middle_m;
+  }
+  return from_tilt(low_m);
+}
+
 Equilibrium Statics::shear_to_force(double force_N_per_m) const {
   const double of_tilt = contact_force(tilted_, mesh::tributary_lengths_m(mesh_)).shear_N_per_m;
   const auto key =

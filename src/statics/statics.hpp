@@ -103,12 +103,16 @@ class Statics {
   /// @throws UserError where no shear does it.
   Equilibrium shear_to(double share) const;
 
+  /// Equilibrium at the smallest shear at which t/p inside reaches mu_s, to 1e-6 of it from below where slip
+  /// spreads from an edge of contact up to there: then shear_to(1) finds a later one, with other states.
+  /// @throws UserError as shear_to
+  Equilibrium shear_to_first() const;
+
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
 
   /// Equilibrium at the shear at which the shear tractions add up to a force, per unit thickness.
-  /// @throws UserError where the tilt alone has a larger one, no shear gives it, or t/p inside is beyond
-  /// mu_s.
+  /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
   Equilibrium shear_to_force(double force_N_per_m) const;
 
   /// The loading with the displacements that give its normal force.
