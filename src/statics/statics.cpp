@@ -513,14 +513,21 @@ Equilibrium Statics::shear_by(double shear_m) const {
 
 Equilibrium Statics::shear_to_first() const {
   constexpr double accuracy = 1e-6, step_down = 1e-3;
+  constexpr int n_steps = 64;
   const auto from_tilt = [&](double shear_m) {
     last_.reset();
     return shear_by(shear_m);
   };
   const auto is_below = [&](const Equilibrium& e) { return e.peak_ratio < ratio_at_peak(e, 1); };
   auto critical = shear_to(1);
-  double high_m = (1 - step_down) * critical.shear_m, low_m = 0;
-  if (is_below(from_tilt(high_m))) return critical;
+  // While contact opens, places inside become places at an edge: being beyond mu_s need not last.
+  double high_m = 0, low_m = 0;
+  for (int k = 1; high_m == 0; ++k) {
+    if (k > n_steps) return critical;
+    const double shear_m =
+        (k < n_steps ? static_cast<double>(k) / n_steps : 1 - step_down) * critical.shear_m;
+    (is_below(from_tilt(shear_m)) ? low_m : high_m) = shear_m;
+  }
   while (high_m - low_m > accuracy * high_m) {
     const double middle_m = 0.5 * (low_m + high_m);
     (is_below(from_tilt(middle_m)) ? low_m : high_m) = middle_m;
