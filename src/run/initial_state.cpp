@@ -265,7 +265,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();
-  const auto critical = critical_state(config, statics);
+  const auto critical = statics.shear_to(1);
   initial.critical_shear_m = critical.shear_m;
   if (config.loading.method == statics::LoadingMethod::direct) {
     initial.common = common_state(config, statics, critical, initial.tributary_m);
@@ -305,7 +305,7 @@ std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes&
                                  at_all_nodes(mu_s, meshes.plate),
                                  interface::static_coefficient_key(config.friction));
   const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
-  const auto critical = critical_state(config, statics);
+  const auto critical = statics.shear_to(1);
   auto common = common_state(config, statics, critical, tributary_m);
   const auto loads = found_loads(config, statics, critical, common, tributary_m);
   return LoadedState{loads, std::move(common)};

@@ -10,10 +10,6 @@ bool has_forces(const input::Case& config) {
   return loading.normal_force_N_per_m || loading.mean_pressure_Pa || statics::is_sheared_by_force(loading);
 }
 
-statics::Equilibrium critical_state(const input::Case& config, const statics::Statics& statics) {
-  return statics::is_sheared_by_force(config.loading) ? statics.shear_to_first() : statics.shear_to(1);
-}
-
 statics::Equilibrium common_state(const input::Case& config, const statics::Statics& statics,
                                   const statics::Equilibrium& critical, std::span<const double> tributary_m) {
   const auto& loading = config.loading;

@@ -30,12 +30,9 @@ struct FoundLoads {
 /// Whether a case gives any load as a force.
 bool has_forces(const input::Case& config);
 
-/// At the critical shear; the first one where forces are a share of the critical one.
-statics::Equilibrium critical_state(const input::Case& config, const statics::Statics& statics);
-
 /// The state before triggered events, by static equilibria: at the margin below the critical shear, or under
 /// the shear force that the case gives.
-/// @param critical  see critical_state
+/// @param critical  statics.shear_to(1)
 /// @throws UserError where no shear gives that, or the force is beyond the critical one
 statics::Equilibrium common_state(const input::Case& config, const statics::Statics& statics,
                                   const statics::Equilibrium& critical, std::span<const double> tributary_m);

@@ -511,30 +511,6 @@ Equilibrium Statics::shear_by(double shear_m) const {
   return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; });
 }
 
-Equilibrium Statics::shear_to_first() const {
-  constexpr double accuracy = 1e-6, step_down = 1e-3;
-  constexpr int n_steps = 64;
-  const auto from_tilt = [&](double shear_m) {
-    last_.reset();
-    return shear_by(shear_m);
-  };
-  const auto is_below = [&](const Equilibrium& e) { return e.peak_ratio < ratio_at_peak(e, 1); };
-  auto critical = shear_to(1);
-  // While contact opens, places inside become places at an edge: being beyond mu_s need not last.
-  double high_m = 0, low_m = 0;
-  for (int k = 1; high_m == 0; ++k) {
-    if (k > n_steps) return critical;
-    const double shear_m =
-        (k < n_steps ? static_cast<double>(k) / n_steps : 1 - step_down) * critical.shear_m;
-    (is_below(from_tilt(shear_m)) ? low_m : high_m) = shear_m;
-  }
-  while (high_m - low_m > accuracy * high_m) {
-    const double middle_m = 0.5 * (low_m + high_m);
-    (is_below(from_tilt(middle_m)) ? low_m : high_m) = middle_m;
-  }
-  return from_tilt(low_m);
-}
-
 Equilibrium Statics::shear_to_force(double force_N_per_m) const {
   const double of_tilt = contact_force(tilted_, mesh::tributary_lengths_m(mesh_)).shear_N_per_m;
   const auto key =
@@ -554,10 +530,6 @@ Equilibrium Statics::shear_to_force(double force_N_per_m) const {
   if (!reached)
     throw UserError("{}: no shear gives a force of {:.6g} N/m; reduce it, or raise {}", key, force_N_per_m,
                     Key(mu_s_key_));
-  if (constexpr double rounding = 1e-6; e.peak_ratio > (1 + rounding) * ratio_at_peak(e, 1))
-    throw UserError(
-        "{}: under a shear force of {:.6g} N/m t/p inside is {:.6g} at x = {:.4g} m, beyond {}; reduce it",
-        key, force_N_per_m, e.peak_ratio, e.peak_x_m, name_of_ratio(1));
   return e;
 }
 

@@ -103,11 +103,6 @@ class Statics {
   /// @throws UserError where no shear does it.
   Equilibrium shear_to(double share) const;
 
-  /// Equilibrium at the smallest shear at which t/p inside reaches mu_s, to 1e-6 of it from below where slip
-  /// spreads from an edge of contact up to there: then shear_to(1) finds a later one, with other states.
-  /// @throws UserError as shear_to
-  Equilibrium shear_to_first() const;
-
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
 

@@ -141,13 +141,8 @@ def test_an_edge_that_is_held_brings_nothing_to_slip(program, coarse, of_motion)
     assert "loading.shear_speed_over_c_L is 0; that holds the top edge still" in line
 
 
-@pytest.mark.parametrize("share", [0.9, 0.99, 1])
-@pytest.mark.parametrize("element_size_m", [4e-3, 2e-3])
-def test_no_place_inside_is_beyond_its_strength(program, case, tmp_path, share, element_size_m):
-    """Where slip spreads from the edge of a flat block the critical shear is the first one, no later one."""
-    settings = sets(f"loading.shear_over_critical={share}", f"plate.element_size_m={element_size_m}")
-    require_done(program("run", case, "-q", "-o", "out", *settings, *sets("event.kind=none")))
-    statics = run_json(tmp_path / "out")["statics"]
-    assert statics["common_peak_t_over_p"] < 1.3 * (1 + 1e-6)
-    if share == 1:
-        assert statics["common_peak_t_over_p"] > 1.29
+def test_a_place_inside_beyond_its_strength_is_told(program, case):
+    """Slip that spreads from the edge of a flat block brings a place inside beyond mu_s first."""
+    settings = sets("plate.element_size_m=2e-3", "event.kind=none", "loading.shear_over_critical=0.99")
+    info = require_done(program("info", case, *settings)).stdout
+    assert re.search(r"note: t is beyond mu_s p at \d+ of \d+ nodes inside: they slip at once", info)
