@@ -13,6 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "files/text.hpp"
+#include "run/choices.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::cli {
@@ -240,11 +241,10 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
   add_costs(info, list);
   if (sharing) add_shared(*info.shared, *sharing, list);
   if (info.loads) add_loads(*info.loads, list);
-  if (config.loading.shear_speed_over_c_L > 0)
+  if (const double speed_m_per_s = run::top_speed_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
-                         config.loading.shear_speed_over_c_L * info.speeds.c_L,
-                         config.loading.shear_speed_over_c_L * info.speeds.c_L * config.time.end_s));
+                         speed_m_per_s, speed_m_per_s * config.time.end_s));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);

@@ -509,8 +509,7 @@ void add_loading(EntryList& list) {
                number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
                       {0, 1, false, true},
                       "speed of the top edge to +x over the longitudinal wave speed, in a ramp and during "
-                      "the event; 0 "
-                      "holds it still, which a ramp and event.kind = spontaneous do not allow"),
+                      "the event; 0 holds it still, which a ramp and event.kind = spontaneous do not allow"),
            });
   list.add(
       Stage::statics,
@@ -751,8 +750,7 @@ void add_probes(EntryList& list) {
                      "of the same places, all different; without them their numbers, from 1"),
                number("probes.interval_s", at(&Case::probes, &Probes::interval_s), above(0),
                       "spacing of the rows of probes.h5, each at the step nearest after its time; one step "
-                      "where that is "
-                      "longer"),
+                      "where that is longer"),
            });
 }
 

@@ -68,8 +68,7 @@ void check_prestress(const Case& config, const Document& document) {
     if (config.loading.shear_speed_over_c_L > 0 || !is_driven) return;
     throw UserError(
         "{} is 0; that holds the top edge still, which a ramp or {} = spontaneous needs to move; choose a "
-        "speed "
-        "greater than 0",
+        "speed greater than 0",
         Key("loading.shear_speed_over_c_L"), kind)
         .about(method.name);
   }

@@ -76,9 +76,9 @@ void ObservedRun::archive(StateArchive& archive) {
   for (const auto& observer : observers_) {
     if (observer->name() == nullptr) continue;
     const std::string expected = observer->name();
-    std::vector<char> name(expected.begin(), expected.end());
+    std::string name = expected;
     archive(name);
-    require_possible(std::string(name.begin(), name.end()) == expected, "observers");
+    require_possible(name == expected, "observers");
     observer->archive(archive);
   }
   if (!archive.is_loading()) return;

@@ -333,8 +333,7 @@ void bind_cases(nb::module_& module) {
       .def("run", &run_case, "dir"_a, "overwrite"_a, "threads"_a.none(), "checkpoint_every_s"_a,
            "progress"_a.none(), "observers"_a,
            "Runs the case into a folder; progress(part, step, total) is called at times, each of the "
-           "observers "
-           "with an InterfaceState at its interval, s.");
+           "observers with an InterfaceState at its interval, s.");
   module.def("run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "progress"_a.none(),
              "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].");
   module.def("resume", &resume, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),

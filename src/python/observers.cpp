@@ -30,12 +30,12 @@ class FunctionObserver final : public motion::IntervalObserver {
   std::string look(record::History& row, const motion::Now& now, motion::Pause& /*pause*/) override {
     std::string reason;
     watcher_.in_python([&] {
-      const nb::object told = function_(InterfaceState{now.step, std::move(row)});
-      if (told.is_none()) return;
-      if (!nb::isinstance<nb::str>(told) || nb::len(told) == 0)
+      const nb::object answer = function_(InterfaceState{now.step, std::move(row)});
+      if (answer.is_none()) return;
+      if (!nb::isinstance<nb::str>(answer) || nb::len(answer) == 0)
         throw UserError("an observer returned {}; it returns None, or why the event is to end, a text",
-                        nb::repr(told).c_str());
-      reason = nb::cast<std::string>(told);
+                        nb::repr(answer).c_str());
+      reason = nb::cast<std::string>(answer);
     });
     return reason;
   }

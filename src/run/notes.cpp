@@ -127,22 +127,16 @@ void add_lengths(const input::Case& config, Notes& notes) {
         fmt::format("fronts.trigger_margin_m = {:.4g} m leaves less than half of the interface "
                     "to t_d and p_d",
                     config.fronts.trigger_margin_m));
-}
-
-/// Probes in the element beside the interface, or the next one: there displacements bend within an element.
-void add_probes_beside_interface(const input::Case& config, Notes& notes) {
-  const auto places = input::probe_places(config);
-  constexpr double elements_between = 2;
-  const double needed_m = elements_between * config.plate.element_size_m;
+  // Beside the interface displacements bend within an element.
+  const auto probes = input::probe_places(config);
   const auto is_beside = [&](const record::ProbePlace& place) {
-    return place.y_m != 0 && std::abs(place.y_m) < (1 - 1e-9) * needed_m;
+    return place.y_m != 0 && std::abs(place.y_m) < (1 - 1e-9) * min_m;
   };
-  if (const auto n = std::ranges::count_if(places, is_beside); n > 0)
-    notes.push_back(
-        fmt::format("probes: {} of {} are less than two elements, {:.4g} m, from the interface: strains and "
-                    "stresses there "
-                    "are those of the mesh; choose a smaller plate.element_size_m",
-                    n, places.size(), needed_m));
+  if (const auto n = std::ranges::count_if(probes, is_beside); n > 0)
+    notes.push_back(fmt::format(
+        "probes: {} of {} are less than two elements, {:.4g} m, from the interface: strains and stresses "
+        "there are those of the mesh; choose a smaller plate.element_size_m",
+        n, probes.size(), min_m));
 }
 
 /// Rows of a table that end where a node is, but for rounding: the node has the later row's values.
@@ -252,7 +246,6 @@ std::vector<std::string> notes_of_case(const input::Case& config, const RuptureO
   add_odd_units_of_friction(config, notes);
   add_odd_pressures(config, notes);
   add_lengths(config, notes);
-  add_probes_beside_interface(config, notes);
   add_times(config, step_s, notes);
   add_free_sides(config, notes);
   add_damping(config, notes);

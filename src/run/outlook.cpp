@@ -125,7 +125,7 @@ std::string caution_of_mesh(double zone_elements, double S) {
       fmt::format("the process zone has {:.3g} elements at rest and fewer in motion", zone_elements);
   if (zone_elements < fewest_elements) return is + "; below 3 the mesh decides on fronts and their speeds";
   if (zone_elements < elements_for_peaks) return is + "; peaks of slip rate and traction need 6";
-  if (zone_elements < elements_for_transition && !(S >= stability::supershear_S))  // or unknown
+  if (zone_elements < elements_for_transition && may_pass_c_S(S))
     return is + "; the place where fronts pass c_S, where S < 1.77, needs 16";
   return {};
 }

@@ -26,6 +26,10 @@ struct RuptureOutlook {
 /// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005), which peaks
 /// need, and which the place needs where fronts pass c_S.
 inline constexpr double fewest_elements = 3, elements_for_peaks = 6, elements_for_transition = 16;
+/// Whether fronts may pass c_S, as far as S tells; it is not a number where it is unknown.
+inline bool may_pass_c_S(double S) {
+  return !(S >= stability::supershear_S);
+}
 /// Damping length over the process zone; more moves the place where fronts pass c_S by more than some per
 /// cent.
 inline constexpr double harmless_damping = 0.02;

@@ -55,8 +55,7 @@ Pair pair_of(const Bodies& bodies) {
 std::string supershear_regime(double half_length_m, Pair pair) {
   auto text = fmt::format(
       "S < 1.77: fronts above c_S can form, {}about {:.2g} m from a nucleation of the critical length on, "
-      "sooner "
-      "from a longer one",
+      "sooner from a longer one",
       pair == Pair::equal ? "without damping " : "between equal bodies ", half_length_m);
   if (pair == Pair::rigid) return text + "; on a rigid plane much earlier";
   if (pair == Pair::unlike) return text + "; between these no formula says where, often much earlier";
