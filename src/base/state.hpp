@@ -42,7 +42,7 @@ class StateArchive {
   virtual ~StateArchive() = default;
 
   virtual bool is_loading() const = 0;
-  /// Writes so many bytes, or reads them.
+  /// Writes n bytes, or reads them.
   virtual void bytes(void* data, std::size_t n) = 0;
   /// Refuses a length that what is left to read cannot hold.
   virtual void require(std::uint64_t count) const = 0;

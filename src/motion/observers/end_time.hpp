@@ -5,7 +5,7 @@
 
 namespace slipfront::motion {
 
-/// Ends a run after so many steps.
+/// Ends a run after a number of steps.
 class EndTime final : public Observer {
  public:
   explicit EndTime(std::int64_t n_steps) : n_steps_(n_steps) {}

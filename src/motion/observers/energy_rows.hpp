@@ -16,8 +16,7 @@ class EnergyRows final : public Observer {
   /// @param end_s  makes room for all until then
   EnergyRows(const record::Energies& start, double interval_s, double step_s, double end_s)
       : every_(interval_s) {
-    // All that may come at once: while it grew, the rows would be there twice. More than so many, 9 GB of
-    // them, are no more than asked for.
+    // Room for all rows at the start: a vector that grows holds them twice. At most 9 GB of them.
     constexpr double max_rows_in_advance = 1e8;
     rows_.reserve(
         static_cast<std::size_t>(std::min(end_s / std::max(interval_s, step_s) + 3, max_rows_in_advance)));

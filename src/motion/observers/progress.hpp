@@ -13,8 +13,8 @@ namespace slipfront::motion {
 /// step; returns false to interrupt it.
 using Monitor = std::function<bool(std::int64_t step, std::int64_t total)>;
 
-/// Asks a monitor, every so many steps and where an interruption is wanted. It comes after all observers that
-/// record: in it checkpoints are kept.
+/// Asks a monitor at an interval of steps, and where an interruption is wanted. It comes after all observers
+/// that record: in it checkpoints are kept.
 class Progress final : public Observer {
  public:
   Progress(const TimeStepper& stepper, std::int64_t interval, std::int64_t total, Monitor monitor)
