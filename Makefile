@@ -7,7 +7,7 @@ SHELL := bash
 APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv python3-dev \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
   libhdf5-dev libboost-dev libssl-dev libgtest-dev libgmock-dev
-MPI_PACKAGES := libopenmpi-dev openmpi-bin libpetsc-real-dev
+MPI_PACKAGES := libopenmpi-dev openmpi-bin
 SLURM_PACKAGES := slurm-wlm munge
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev
@@ -120,7 +120,6 @@ test-slow: ready-to-test  ## the tests in Python that take longest: trials, tuto
 	@scripts/run-tests $(BUILD) $(PYTHON) slow
 
 test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process, with 2 and 3 of them
-	cmake --build --preset mpi --target test_petsc
 	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q tests/mpi
 
 # The paper's runs and figures; the argument adds options.

@@ -9,15 +9,16 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/python_command.hpp"
 #include "processes/processes.hpp"
+#include "run/session.hpp"
 #include "run/subdomains.hpp"
 
 namespace {
@@ -70,53 +71,22 @@ void require_stack() {
                              limit.rlim_cur / 1024, least_bytes / 1024);
 }
 
-/// A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
-/// name.
-int report(int code, const std::string& message) {
-  std::fputs((message + "\n").c_str(), stderr);
-  return code;
-}
-
-/// Of several processes all but the leader wait for what it asks of them.
-class Leading {
- public:
-  explicit Leading(slipfront::Processes& processes) : processes_(processes) {
-    slipfront::run::lead(processes);
-  }
-  Leading(const Leading&) = delete;
-  Leading& operator=(const Leading&) = delete;
-  ~Leading() { slipfront::run::dismiss(processes_); }
-
- private:
-  slipfront::Processes& processes_;
-};
-
-/// Other commands would leave all of their work to the leader.
+/// Other commands would leave all of their work to rank 0.
 void require_shared(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   const std::string_view command(argv[1]);
-  if (command == "run" || command == "bench") return;
-  throw slipfront::UserError(
-      "slipfront: only run and bench can be shared by several processes; start {} alone", command);
+  if (command == "run") return;
+  throw slipfront::UserError("slipfront: only run can be shared by several MPI ranks; start {} alone",
+                             command);
 }
 
-int run(int argc, char** argv) {
-  const auto processes = slipfront::join_processes(argc, argv);
-  if (processes && processes->rank() > 0) {
-    slipfront::run::serve(*processes);
-    return done;
-  }
-  std::optional<Leading> leading;
-  if (processes) {
-    leading.emplace(*processes);
-    require_shared(argc, argv);
-  }
-  if (slipfront::cli::is_python_command(argc, argv)) slipfront::leave_processes();
+void run(int argc, char** argv, slipfront::Processes& processes) {
+  if (processes.size() > 1) require_shared(argc, argv);
   slipfront::cli::become_python_command(argc, argv);
   slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
                                   slipfront::cli::version_text());
   auto& app = program.app();
-  slipfront::cli::add_run(app, processes.get());
+  slipfront::cli::add_run(app, processes);
   slipfront::cli::add_info(app);
   slipfront::cli::add_validate(app);
   slipfront::cli::add_new(app);
@@ -125,10 +95,49 @@ int run(int argc, char** argv) {
   slipfront::cli::add_study(app);
   slipfront::cli::add_verify(app);
   slipfront::cli::add_reproduce(app);
-  slipfront::cli::add_bench(app, processes.get());
+  slipfront::cli::add_bench(app);
   slipfront::cli::add_page(app, program);
   program.run(argc, argv);
-  return done;
+}
+
+/// The exit code for an exception, and the line that says why
+std::pair<int, std::string> reason_to_end() try { throw; } catch (const slipfront::UserError& error) {
+  return {user_error, error.what()};
+} catch (const slipfront::BlowUp& error) {
+  return {blow_up, fmt::format("slipfront: {}", error.what())};
+} catch (const slipfront::VerificationFailed& error) {
+  return {verification_failed, fmt::format("slipfront: {}", error.what())};
+} catch (const slipfront::Interrupted& error) {
+  return {code_of(slipfront::cli::interrupting_signal()), fmt::format("slipfront: {}", error.what())};
+} catch (const slipfront::WriteError& error) {
+  return {internal_error, fmt::format("slipfront: {}", error.what())};
+} catch (const slipfront::ProcessError& error) {
+  return {internal_error, fmt::format("slipfront: {}", error.what())};
+} catch (const std::bad_alloc&) {
+  return {internal_error, "slipfront: not enough memory; use larger elements"};
+} catch (const std::exception& error) {
+  return {internal_error, fmt::format("slipfront: internal error: {}", error.what())};
+} catch (...) {
+  return {internal_error, "slipfront: internal error of unknown kind"};
+}
+
+/// Rank 0 reads the options, and the others take part in the runs that these ask for.
+void run_on(slipfront::Processes& processes, int argc, char** argv) try {
+  if (processes.size() > 1) slipfront::run::require_same_program(processes);
+  if (!processes.is_root()) return slipfront::run::take_part(processes);
+  run(argc, argv, processes);
+  slipfront::run::release(processes);
+} catch (const slipfront::FailedElsewhere&) {
+  // Rank 0 tells why.
+} catch (...) {
+  const auto [code, line] = reason_to_end();
+  constexpr std::string_view name = "slipfront: ";
+  if (!processes.is_root())
+    processes.fail(code, fmt::format("{}rank {}: {}", name, processes.rank(),
+                                     line.substr(line.starts_with(name) ? name.size() : 0)));
+  if (processes.is_awaited()) processes.fail(code, line);
+  slipfront::run::release(processes);
+  throw;
 }
 
 }  // namespace
@@ -136,23 +145,12 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) try {
   hold_standard_streams();
   require_stack();
-  return run(argc, argv);
-} catch (const slipfront::UserError& error) {
-  return report(user_error, error.what());
-} catch (const slipfront::BlowUp& error) {
-  return report(blow_up, fmt::format("slipfront: {}", error.what()));
-} catch (const slipfront::VerificationFailed& error) {
-  return report(verification_failed, fmt::format("slipfront: {}", error.what()));
-} catch (const slipfront::Interrupted& error) {
-  return report(code_of(slipfront::cli::interrupting_signal()), fmt::format("slipfront: {}", error.what()));
-} catch (const slipfront::WriteError& error) {
-  return report(internal_error, fmt::format("slipfront: {}", error.what()));
-} catch (const slipfront::ProcessError& error) {
-  return report(internal_error, fmt::format("slipfront: {}", error.what()));
-} catch (const std::bad_alloc&) {
-  return report(internal_error, "slipfront: not enough memory; use larger elements");
-} catch (const std::exception& error) {
-  return report(internal_error, fmt::format("slipfront: internal error: {}", error.what()));
+  run_on(*slipfront::join_processes(argc, argv), argc, argv);
+  return done;
 } catch (...) {
-  return report(internal_error, "slipfront: internal error of unknown kind");
+  // A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
+  // name.
+  const auto [code, line] = reason_to_end();
+  std::fputs((line + "\n").c_str(), stderr);
+  return code;
 }

@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   slipfront::python::bind_errors(module);
   slipfront::python::bind_observers(module);
   slipfront::python::bind_cases(module);
+  slipfront::python::bind_compose(module);
   slipfront::python::bind_fronts(module);
   slipfront::python::bind_fits(module);
   slipfront::python::bind_kammer2012(module);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Slip fronts at frictional interfaces: cases run, results opened, a user's own data measured. docs/python.md
+"""Slip fronts at frictional interfaces: cases run or composed, results opened, a user's own data measured.
+docs/python.md
 
 Nothing is imported before it is used: figures and readers need neither xarray nor the compiled module."""
 
@@ -8,13 +9,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from slipfront._core import Body as Body
     from slipfront._core import Claim as Claim
     from slipfront._core import Collapse as Collapse
     from slipfront._core import ExponentialFit as ExponentialFit
     from slipfront._core import Info as Info
+    from slipfront._core import Interface as Interface
     from slipfront._core import InterfaceState as InterfaceState
+    from slipfront._core import Mesh as Mesh
     from slipfront._core import Outcome as Outcome
     from slipfront._core import Rupture as Rupture
+    from slipfront._core import Stepper as Stepper
     from slipfront._core import WaveSpeeds as WaveSpeeds
     from slipfront._core import WellPosedness as WellPosedness
     from slipfront.claims import collapse as collapse
@@ -45,13 +50,17 @@ if TYPE_CHECKING:
 
 # The module of each name.
 _PLACES = {
+    "Body": "_core",
     "Claim": "_core",
     "Collapse": "_core",
     "ExponentialFit": "_core",
     "Info": "_core",
+    "Interface": "_core",
     "InterfaceState": "_core",
+    "Mesh": "_core",
     "Outcome": "_core",
     "Rupture": "_core",
+    "Stepper": "_core",
     "WaveSpeeds": "_core",
     "WellPosedness": "_core",
     "collapse": "claims",

@@ -362,6 +362,141 @@ def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: floa
     Goes on with the unfinished run of a folder; does nothing where it is complete.
     """
 
+class Mesh:
+    """
+    Nodes and four-node cells of a plate, its lower edge the interface.
+
+    plate: keys of [plate] of a case file, such as width_m=0.1, height_m=0.05, element_size_m=1e-3, corner="none", sides="absorbing", top="free". Raises CaseError. Arrays are views that cannot be written to.
+    """
+
+    def __init__(self, **plate: object) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+    @property
+    def x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """[nodes] along the interface, from the left edge"""
+
+    @property
+    def y_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """[nodes] away from the interface; of a body below downwards"""
+
+    @property
+    def cells(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, 4), writable=False)]:
+        """[cells, 4] numbers of their nodes, counterclockwise"""
+
+    @property
+    def interface_nodes(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """[interface nodes] their numbers, x ascending"""
+
+class Body:
+    """
+    An elastic body with stiffness damping.
+
+    material: keys of [material], such as youngs_modulus_Pa=2.6e9, poissons_ratio=0.37, density_kg_per_m3=1200, plane="strain". Raises CaseError.
+    """
+
+    def __init__(self, mesh: Mesh, **material: object) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+class Interface:
+    """
+    Contact and friction of an interface.
+
+    friction: keys of [friction], such as law="slip_weakening" and its parameters. contact: contact.algorithm, "direct" or "predictor_corrector". Raises CaseError.
+    """
+
+    def __init__(self, *, contact: object = 'direct', **friction: object) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+class Stepper:
+    """
+    Explicit steps of a body on the rigid plane, or of two bodies on each other.
+
+    below: another body instead of the plane, described upside down: y, u_y and v_y point away from the interface. Its interface nodes face those above. time: keys of [time] that say how steps are taken, such as interface_substeps=1. Results do not depend on threads. Arrays are views of the state between two steps: they change with it and cannot be written to; copy what is to be kept. Raises CaseError, also before the start, after a failure, and where another thread is advancing it.
+    """
+
+    def __init__(self, above: Body, interface: Interface, below: Body | None = None, *, threads: int = 1, **time: object) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+    def start(self, t_Pa: object, p_Pa: object, *, intact: object = 1.0, shear_speed_m_per_s: float = 0.0) -> None:
+        """
+        Starts at rest, undeformed, under tractions on the interface: each a number or [interface nodes]. t_Pa drives the body above to +x, p_Pa > 0 presses it down, the opposite acts on a body below. intact: 1, or less down to 0 for nodes weakened for good, mu = mu_k + intact (mu - mu_k). shear_speed_m_per_s: of a loaded upper edge. Raises CaseError.
+        """
+
+    def start_from_statics(self, share: float | None = None, **loading: object) -> None:
+        """
+        Starts from the equilibrium under tilt and shear of the upper edge. share: largest t/(mu_s p) inside, above 1 for an event that begins by itself; by default what `loading` says, keys of [loading], as before a triggered event. Raises CaseError, KeyboardInterrupt.
+        """
+
+    def set_tractions(self, t_Pa: object, p_Pa: object) -> None:
+        """
+        Tractions on the interface from the next step on, instead of those before, as for start.
+        """
+
+    def advance(self, n_steps: int) -> int:
+        """
+        Takes steps; other Python threads go on meanwhile. Returns their number. Raises BlowUpError, after which the stepper cannot be used, and KeyboardInterrupt, after which it goes on.
+        """
+
+    def run_until(self, time_s: float) -> int:
+        """The same up to the first step at or after a time, s since the start."""
+
+    def energies(self) -> dict[str, float]:
+        """
+        Terms of the energy balance up to the last half (sub-)step, J per metre of thickness, named as in energy.csv: what is stored, works since the start, and what they leave open.
+        """
+
+    @property
+    def step(self) -> int:
+        """steps taken"""
+
+    @property
+    def time_s(self) -> float:
+        """since the start"""
+
+    @property
+    def step_s(self) -> float: ...
+
+    @property
+    def stable_step_s(self) -> float:
+        """the largest stable step of the smallest cells"""
+
+    @property
+    def x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """[interface nodes] position along the interface from the left edge"""
+
+    @property
+    def slip_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        [interface nodes] displacement along x of the body above relative to what it lies on, since the start
+        """
+
+    @property
+    def slip_rate_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """[interface nodes] its velocity in the last (sub-)step"""
+
+    @property
+    def t_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """
+        [interface nodes] tangential traction in the last (sub-)step, positive against sliding to +x
+        """
+
+    @property
+    def p_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """[interface nodes] contact pressure, positive in compression"""
+
+    def displacement_m(self, body: int = 0) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
+        """Of all nodes of a body, 0 above or 1 below: arrays u_x and u_y."""
+
+    def velocity_m_per_s(self, body: int = 0) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
+        """
+        The same of the velocity half a step before, half a sub-step next to the interface.
+        """
+
 class Front:
     """A path of onsets, continuous in x, in one direction. Arrays: [points]"""
 

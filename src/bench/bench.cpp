@@ -23,7 +23,6 @@
 #include "motion/stepper.hpp"
 #include "run/needs.hpp"
 #include "run/run.hpp"
-#include "run/subdomains.hpp"
 #include "solid/kernels.hpp"
 #include "statics/prestress.hpp"
 #include "statics/statics.hpp"
@@ -217,7 +216,7 @@ PaperRun paper_run(int columns, int threads) {
 
 }  // namespace
 
-StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes* processes) {
+StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const auto plate = plate_of(columns);
   const int rows = columns / 2;
   const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
@@ -232,12 +231,8 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   loading.solver = solver;
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
-  const run::SharedStatics helpers(processes);
-  statics::DistributedFields kept;
   const solid::Material material;
-  const statics::Statics statics({mesh, material}, std::nullopt, loading,
-                                 std::vector<double>(mesh.interface_nodes.size(), mu_s), "friction.mu_s",
-                                 [] { return true; }, {processes, processes != nullptr ? &kept : nullptr});
+  const statics::Statics statics(mesh, material, loading, mu_s);
   StaticsRun result{columns, mesh.grid.rows, std::string(statics::name_of(chosen)), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;
   const auto common = statics.shear_to(1 - loading.critical_margin);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "motion/settings.hpp"
-#include "processes/processes.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::bench {
@@ -52,9 +51,8 @@ struct StaticsRun {
   double peak_bytes = 0;    ///< of the process
   double critical_shear_m = 0;
 };
-/// @param processes  that share it by PETSc, all in run::serve; null for this one alone
 /// @throws UserError where the memory does not suffice.
-StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes* processes);
+StaticsRun measure_statics(int columns, statics::StaticSolver solver);
 
 struct Results {
   double bandwidth_bytes_per_s = 0;  ///< of one thread, over arrays far larger than the caches

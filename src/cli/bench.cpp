@@ -19,9 +19,6 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/print.hpp"
-#include "fronts/fit.hpp"
-#include "run/subdomains.hpp"
-#include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::cli {
@@ -95,50 +92,6 @@ void print_table(const bench::Results& results) {
         r.node_updates_per_s * 1e-6);
 }
 
-/// Of the links between neighbours, or of the leader's with all others.
-Link median_of(std::span<const Link> links, bool of_leader) {
-  std::vector<double> latencies_s, bandwidths_bytes_per_s;
-  for (const auto& link : links) {
-    if (of_leader ? link.from != 0 : link.to != link.from + 1) continue;
-    latencies_s.push_back(link.latency_s);
-    bandwidths_bytes_per_s.push_back(link.bandwidth_bytes_per_s);
-  }
-  return {0, 0, fronts::median(latencies_s), fronts::median(bandwidths_bytes_per_s)};
-}
-
-void print_network(std::span<const Link> links, int n_processes, bool as_json) {
-  const auto neighbours = median_of(links, false), leader = median_of(links, true);
-  const Link slower{0, 0, std::max(neighbours.latency_s, leader.latency_s),
-                    std::min(neighbours.bandwidth_bytes_per_s, leader.bandwidth_bytes_per_s)};
-  if (as_json) {
-    const auto add_to = [](nlohmann::ordered_json& told, const Link& link) {
-      told["latency_s"] = link.latency_s;
-      told["bandwidth_bytes_per_s"] = link.bandwidth_bytes_per_s;
-    };
-    nlohmann::ordered_json measured = {{"processes", n_processes}};
-    add_to(measured, slower);
-    for (const auto& link : links) {
-      nlohmann::ordered_json told = {{"from", link.from}, {"to", link.to}};
-      add_to(told, link);
-      measured["links"].push_back(std::move(told));
-    }
-    return print_json(measured);
-  }
-  print("{}, {}, {}\n\n", version_line(), processor(), compiler());
-  print("{:<26}{:>14}{:>18}\n", "processes", "latency, us", "GB/s each way");
-  const auto print_link = [](const std::string& name, const Link& link) {
-    print("{:<26}{:>14.3g}{:>18.3g}\n", name, link.latency_s * 1e6, link.bandwidth_bytes_per_s * 1e-9);
-  };
-  for (const auto& link : links) print_link(fmt::format("{} and {}", link.from, link.to), link);
-  print_link("median of neighbours", neighbours);
-  print_link("median of 0 and others", leader);
-  print(
-      "\nHalf a round trip of one number; 256 KiB both ways at once, in messages of 32 KiB. Medians; the "
-      "slower ones for\n"
-      "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g}\n",
-      slower.latency_s, slower.bandwidth_bytes_per_s);
-}
-
 void print_statics(const bench::StaticsRun& r, bool as_json) {
   if (as_json) {
     const nlohmann::ordered_json measured = {{"columns", r.columns},
@@ -162,27 +115,22 @@ void print_statics(const bench::StaticsRun& r, bool as_json) {
 struct BenchArguments {
   std::optional<int> threads, columns;
   std::optional<std::string> solver;
-  bool large = false, network = false;
+  bool large = false;
 
   /// @throws UserError where some of them are of different measurements
   void require_one() const {
     const auto refuse = [](bool is_given, const char* option, const char* with) {
       if (is_given) throw UserError("slipfront: bench {} takes no {}; leave it out", with, option);
     };
-    for (const auto& [is_chosen, chosen] :
-         {std::pair(network, "--network"), std::pair(columns.has_value(), "--statics")}) {
-      if (!is_chosen) continue;
-      refuse(threads.has_value(), "--threads", chosen);
-      refuse(large, "--large", chosen);
-    }
-    refuse(network && columns, "--statics", "--network");
+    refuse(columns && threads, "--threads", "--statics");
+    refuse(columns && large, "--large", "--statics");
     refuse(solver && !columns, "--solver", "without --statics");
   }
 };
 
 }  // namespace
 
-void add_bench(CLI::App& app, Processes* processes) {
+void add_bench(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
   command->group("The program itself");
@@ -197,37 +145,16 @@ void add_bench(CLI::App& app, Processes* processes) {
                    "Measure the statics of a plate of so many columns instead")
       ->check(CLI::Range(2, 100'000));
   command
-      ->add_option("--solver", arguments->solver,
-                   "... by this solver: auto, direct, iterative (default) or petsc")
-      ->check(CLI::IsMember({"auto", "direct", "iterative", "petsc"}));
-  command->add_flag("--network", arguments->network,
-                    "Measure latency, bandwidth and processor time between processes instead, started by "
-                    "mpirun -n 2 or more");
-  command->callback([arguments, json, processes] {
+      ->add_option("--solver", arguments->solver, "... by this solver: auto, direct or iterative (default)")
+      ->check(CLI::IsMember({"auto", "direct", "iterative"}));
+  command->callback([arguments, json] {
     arguments->require_one();
-    if (arguments->network) {
-      if (processes == nullptr)
-        throw UserError(
-            "slipfront: bench --network measures between processes; start several of a program built for MPI "
-            "with mpirun -n 2 or more");
-      print_network(run::measure_network(*processes), processes->size(), *json);
-      return finish_output();
-    }
-    const auto solver = arguments->solver.value_or("iterative");
-    const bool is_by_petsc = arguments->columns && solver == "petsc";
-    if (is_by_petsc && statics::petsc_version().empty())
-      throw UserError(
-          "slipfront: this program was built without PETSc; build it with make build-mpi, or choose another "
-          "--solver");
-    if (processes != nullptr && !is_by_petsc)
-      throw UserError(
-          "slipfront: of bench only --network, and --statics with --solver petsc, can be shared by several "
-          "processes; start it alone");
     if (arguments->columns) {
+      const auto solver = arguments->solver.value_or("iterative");
       for (const auto s : {statics::StaticSolver::automatic, statics::StaticSolver::direct,
-                           statics::StaticSolver::iterative, statics::StaticSolver::petsc})
+                           statics::StaticSolver::iterative})
         if (statics::name_of(s) == solver)
-          print_statics(bench::measure_statics(*arguments->columns, s, processes), *json);
+          print_statics(bench::measure_statics(*arguments->columns, s), *json);
       return finish_output();
     }
     bench::Options options;

@@ -15,13 +15,12 @@
 namespace slipfront::cli {
 
 /// @param processes  that share a run with this one; null where it is alone
-void add_run(CLI::App& app, Processes* processes);
+void add_run(CLI::App& app, Processes& processes);
 void add_reproduce(CLI::App& app);
 void add_study(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_info(CLI::App& app);
-/// @param processes  between which it may measure; null where this one is alone
-void add_bench(CLI::App& app, Processes* processes);
+void add_bench(CLI::App& app);
 void add_validate(CLI::App& app);
 void add_new(CLI::App& app);
 void add_keys(CLI::App& app);

@@ -179,67 +179,43 @@ std::string columns_text(const motion::Partition& partition) {
   return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
-void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, Listing& list) {
+void add_shared(const run::Info::Shared& shared, Listing& list) {
   const auto& partition = shared.partition;
-  list.add("shared by",
-           fmt::format("{} processes on {} processors, {:.3g} us and {:.3g} GB/s between them",
-                       sharing.n_processes, sharing.n_processors, sharing.network.latency_s * 1e6,
-                       sharing.network.bandwidth_bytes_per_s * 1e-9));
+  list.add("shared by", fmt::format("{} ranks, each with a processor", partition.n_subdomains()));
   list.add("  columns of nodes of each",
            fmt::format("{}, and {} beside them on either side", columns_text(partition),
                        partition.n_subdomains() > 1 ? partition.halo : 0));
-  auto memory = fmt::format("{:.3g} GB of the leader", shared.leader_memory_bytes * 1e-9);
+  auto memory = fmt::format("{:.3g} GB of rank 0", shared.root_memory_bytes * 1e-9);
   if (partition.n_subdomains() > 1) {
     list.add("  exchange every", fmt::format("{} steps", partition.steps_per_exchange));
     list.add("  bytes sent per step",
-             fmt::format("{:.4g} by the process that sends most", shared.bytes_per_step));
-    memory += fmt::format(", {:.3g} GB of each other process", shared.memory_bytes * 1e-9);
+             fmt::format("{:.4g} by the rank that sends most", shared.bytes_per_step));
+    memory += fmt::format(", {:.3g} GB of each other rank", shared.memory_bytes * 1e-9);
   }
   list.add("  memory", memory);
-  list.add("  expected time", fmt::format("{:.2g} s", shared.expected_s));
+  list.add("  expected time", fmt::format("{:.2g} s, without that of messages", shared.expected_s));
   list.add("  own columns, of the event", fmt::format("{:.0f} %", 100 * shared.efficiency));
 }
 
 run::Info info_of(const CaseArguments& arguments, const input::Case& config,
-                  const std::optional<run::Sharing>& sharing) {
+                  const std::optional<int>& n_processes) {
   try {
-    return run::info(config, sharing);
+    return run::info(config, n_processes);
   } catch (const UserError& error) {
     throw arguments.with_place(error);
   }
 }
 
-/// As it is given.
-struct SharingArguments {
-  std::optional<int> n_processes, n_processors;
-  std::optional<double> latency_s, bandwidth_bytes_per_s;
-
-  std::optional<run::Sharing> sharing() const {
-    if (!n_processes) {
-      if (n_processors || latency_s || bandwidth_bytes_per_s)
-        throw UserError(
-            "slipfront: --processors, --latency-s and --bandwidth-bytes-per-s of info say something with "
-            "--processes only");
-      return {};
-    }
-    const run::Network shared_memory;
-    return run::Sharing{*n_processes,
-                        n_processors.value_or(*n_processes),
-                        {latency_s.value_or(shared_memory.latency_s),
-                         bandwidth_bytes_per_s.value_or(shared_memory.bandwidth_bytes_per_s)}};
-  }
-};
-
-void print_info(const CaseArguments& arguments, const std::optional<run::Sharing>& sharing) {
+void print_info(const CaseArguments& arguments, const std::optional<int>& n_processes) {
   const input::Case& config = arguments.read();
-  const auto info = info_of(arguments, config, sharing);
+  const auto info = info_of(arguments, config, n_processes);
   Listing list;
   if (!config.title.empty()) list.add("title", files::one_line(config.title));
   add_wave_speeds(info, list);
   add_size(info, list);
   add_steps(config, info, list);
   add_costs(info, list);
-  if (sharing) add_shared(*info.shared, *sharing, list);
+  if (info.shared) add_shared(*info.shared, list);
   if (info.loads) add_loads(*info.loads, list);
   if (const double speed_m_per_s = run::top_speed_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
@@ -261,28 +237,11 @@ void add_info(CLI::App& app) {
       "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
   command->group("Cases");
   const auto arguments = add_case_arguments(*command);
-  auto shared = std::make_shared<SharingArguments>();
+  auto n_processes = std::make_shared<std::optional<int>>();
   command
-      ->add_option("--processes", shared->n_processes,
-                   "Also predict time and memory of a run that so many processes share")
+      ->add_option("--processes", *n_processes, "Also predict time and memory of a run on so many MPI ranks")
       ->check(CLI::Range(1, 10'000'000));
-  command
-      ->add_option("--processors", shared->n_processors,
-                   "Processors of all machines that the processes share; by default one for each")
-      ->check(CLI::Range(1, 10'000'000));
-  command
-      ->add_option("--latency-s", shared->latency_s,
-                   "Between processes, as bench --network measures it; by default that of shared memory")
-      ->check(positive())
-      ->check(finite())
-      ->type_name("S");
-  command
-      ->add_option("--bandwidth-bytes-per-s", shared->bandwidth_bytes_per_s,
-                   "Between processes, each way; by default that of shared memory")
-      ->check(positive())
-      ->check(finite())
-      ->type_name("B");
-  command->callback([arguments, shared] { print_info(*arguments, shared->sharing()); });
+  command->callback([arguments, n_processes] { print_info(*arguments, *n_processes); });
 }
 
 }  // namespace slipfront::cli

@@ -82,7 +82,7 @@ void add_python_commands(CLI::App& app) {
     app.add_subcommand(command.name, command.description)->group("Results, in Python");
 }
 
-bool is_python_command(int argc, char** argv) {
+static bool is_python_command(int argc, char** argv) {
   const auto names = [&](const PythonCommand& command) { return std::string_view(argv[1]) == command.name; };
   return argc >= 2 && std::any_of(python_commands.begin(), python_commands.end(), names);
 }

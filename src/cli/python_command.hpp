@@ -10,10 +10,7 @@ namespace slipfront::cli {
 /// Registers them for the help. Their work is `become_python_command`, before the command line is parsed.
 void add_python_commands(CLI::App& app);
 
-/// Whether the first argument names such a subcommand.
-bool is_python_command(int argc, char** argv);
-
-/// Does not return where it does: all behind it goes to `python -m
+/// Does not return where the first argument names such a subcommand: all behind it goes to `python -m
 /// slipfront NAME`. The interpreter is $SLIPFRONT_PYTHON; else .venv/bin/python of the source tree that the
 /// program was built in; else python3 of the PATH. In a source tree the package is the tree's own.
 /// @throws UserError where no interpreter can be started

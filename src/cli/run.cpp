@@ -160,7 +160,7 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
 void require_fit(const CaseArguments& arguments, const input::Case& config, const std::filesystem::path& dir,
                  const run::SessionOptions& options) {
   try {
-    run::require_fit(config, dir, options.processes, !options.shared_states);
+    run::require_fit(config, dir, *options.processes);
   } catch (const UserError& error) {
     throw arguments.with_place(error);
   }
@@ -185,7 +185,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     folder.require_empty(options.overwrite);
     require_fit(arguments, *config, folder.dir(), options.session);
   }
-  if (options.session.processes != nullptr && config) {
+  if (options.session.processes->size() > 1 && config) {
     try {
       run::require_divisible(*config, *options.session.processes);
     } catch (const UserError& error) {
@@ -208,12 +208,12 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Processes* processes) {
+void add_run(CLI::App& app, Processes& processes) {
   CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
   command->group("Cases");
   const auto arguments = add_case_arguments(*command);
   auto options = std::make_shared<RunArguments>();
-  options->session.processes = processes;
+  options->session.processes = &processes;
   command->get_option("CASE")->required(false);
   command
       ->add_option("-o,--output", options->dir,

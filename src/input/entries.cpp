@@ -498,11 +498,9 @@ void add_loading(EntryList& list) {
                   "loading.solver", at(&Case::loading, &Loading::solver),
                   {{"auto", StaticSolver::automatic},
                    {"direct", StaticSolver::direct},
-                   {"iterative", StaticSolver::iterative},
-                   {"petsc", StaticSolver::petsc}},
+                   {"iterative", StaticSolver::iterative}},
                   "static equilibria by a sparse factorisation, by conjugate gradients with a multigrid "
-                  "preconditioner, or by the one of both that suits the number of elements; by PETSc, shared "
-                  "by the processes of a run, where the program was built with it")),
+                  "preconditioner, or by the one of both that suits the number of elements")),
       });
   list.add(Stage::motion,
            {

@@ -14,7 +14,6 @@
 #include "base/error.hpp"
 #include "input/entries.hpp"
 #include "solid/operator.hpp"
-#include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::input {
@@ -50,7 +49,7 @@ void check_element_size(const Case& config) {
   if ((in_parts ? std::max(columns, rows) : columns * rows) > max_nodes)
     throw UserError("{} is {:.12g} m; that makes more than {:.3g} nodes{}, choose a larger one{}",
                     element_size, h, max_nodes, in_parts ? " in a row or a column" : "",
-                    is_tilted(config) ? "; under prescribed tractions several processes can share more" : "")
+                    is_tilted(config) ? "; under prescribed tractions several MPI ranks can share more" : "")
         .about("plate.width_m", "plate.height_m");
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   if (h > shorter_m)
@@ -123,10 +122,6 @@ void check_trigger_zone(const Case& config) {
 }
 
 void check_solver(const Case& config) {
-  if (config.loading.solver == StaticSolver::petsc && statics::petsc_version().empty())
-    throw UserError(
-        "{} = petsc: this program was built without PETSc; build it with make build-mpi, or choose another",
-        Key("loading.solver"));
   if (config.loading.solver != StaticSolver::iterative) return;
   const Key solver("loading.solver");
   const auto& plate = config.plate;
@@ -308,23 +303,27 @@ void check_duration(const Case& config) {
 
 }  // namespace
 
-void check_relations(const Case& config, const Document& document) {
+void check_each_table(const Case& config) {
   check_friction(config);
   check_element_size(config);
+  check_step(config.time);
+  check_friction_along_x(config);
+  check_regularisation(config.regularisation);
+  check_magnitudes(config);
+}
+
+void check_relations(const Case& config, const Document& document) {
+  check_each_table(config);
   check_prestress(config, document);
   check_tilt(config);
   check_trigger_zone(config);
   check_solver(config);
-  check_step(config.time);
   check_base(config, document);
   check_trigger(config);
   check_nucleation(config);
-  check_friction_along_x(config);
   check_fronts(config.fronts, config.plate);
-  check_regularisation(config.regularisation);
   check_snapshot_times(config.output.snapshot_times_s);
   check_probes(config);
-  check_magnitudes(config);
   check_duration(config);
 }
 

@@ -12,4 +12,7 @@ namespace slipfront::input {
 /// @throws UserError with the keys that it is about, those first that are to change
 void check_relations(const Case& config, const Document& document);
 
+/// The part of it that does not compare tables.
+void check_each_table(const Case& config);
+
 }  // namespace slipfront::input

@@ -485,7 +485,9 @@ Override parse_override(const std::string& text) {
 
 namespace {
 
-Case case_of(Document document, const std::string& name, std::vector<std::string>& notes) {
+/// @param check  of the whole case
+Case case_of(Document document, const std::string& name, std::vector<std::string>& notes,
+             const std::function<void(const Case&, const Document&)>& check = check_relations) {
   check_tables(document, common_entries());
 
   Case config;
@@ -515,7 +517,7 @@ Case case_of(Document document, const std::string& name, std::vector<std::string
   }
   set_defaults_by_rule(document, config);
   try {
-    check_relations(config, document);
+    check(config, document);
   } catch (const UserError& error) {
     throw with_place(error, document, name);
   }
@@ -554,6 +556,16 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   apply(overrides, document);
   std::vector<std::string> notes;
   return case_of(std::move(document), name, notes);
+}
+
+Case parse_tables(const std::vector<Override>& keys) {
+  Document document;
+  apply(keys, document);
+  std::vector<std::string> notes;
+  Case config = case_of(std::move(document), "case", notes,
+                        [](const Case& tables, const Document&) { check_each_table(tables); });
+  read_tables({}, config);
+  return config;
 }
 
 CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides)

@@ -67,6 +67,10 @@ Case read_case(const std::filesystem::path& file, const std::vector<Override>& o
 Case parse_case(const std::string& text, const std::string& name,
                 const std::vector<Override>& overrides = {});
 
+/// Tables of a case that stand by themselves, such as those of one body: what they ask of other tables is not
+/// checked. Files that they name are read; paths count from the working folder.
+Case parse_tables(const std::vector<Override>& keys);
+
 /// Every key with its value, as a case file that reads back to the same case (doubles to full precision),
 /// each with its help as a comment.
 std::string to_toml(const Case& config);

@@ -330,8 +330,7 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
 
 void Coupling::append_sample(double time_s, record::History& history) const {
   history.time_s.push_back(time_s);
-  for (std::size_t i = 0; i < interface_.size(); ++i)
-    history.slip_m.push_back(relative_u_x_m(i) - start_u_x_m_[i]);
+  for (std::size_t i = 0; i < interface_.size(); ++i) history.slip_m.push_back(slip_m(i));
   const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
   };

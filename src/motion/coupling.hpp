@@ -57,6 +57,8 @@ class Coupling {
   void reverse();
 
   const interface::Interface& state() const { return interface_; }
+  /// Displacement along x relative to the plane, or to the body below, since the start.
+  double slip_m(std::size_t i) const { return relative_u_x_m(i) - start_u_x_m_[i]; }
   /// See Stepper::visit_columns. @param nodes  places along the interface
   template <class Visit>
   void visit_nodes(solid::Span nodes, Visit&& visit) {

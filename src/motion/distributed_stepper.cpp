@@ -3,30 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "motion/step_report.hpp"
-#include "processes/answers.hpp"
 
 namespace slipfront::motion {
-
-mesh::Subset interface_nodes_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
-  // There each node has its own column; many processes ask for theirs.
-  if (mesh.is_interface()) return columns.below(static_cast<int>(std::ssize(mesh.interface_nodes)));
-  const mesh::NodeColumns of_nodes(mesh);
-  std::vector<mesh::Subset::Range> ranges;
-  for (int k = 0; k < std::ssize(mesh.interface_nodes); ++k) {
-    if (!columns.has(of_nodes.column_of(mesh.interface_nodes[static_cast<std::size_t>(k)]))) continue;
-    if (!ranges.empty() && ranges.back().end == k)
-      ++ranges.back().end;
-    else
-      ranges.push_back({k, k + 1});
-  }
-  return mesh::Subset(std::move(ranges));
-}
 
 namespace {
 
@@ -45,11 +29,11 @@ std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
   return some;
 }
 
-void put_loads(const Loads& loads, const mesh::Subset& interface_nodes, MessageBuffer& to) {
-  for (const auto* values :
-       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
-    to.put(cut(*values, interface_nodes));
-  to.put(loads.trigger);
+Loads cut(const Loads& loads, const mesh::Subset& places) {
+  auto some = loads;
+  for (auto* values : {&some.prestress_t_Pa, &some.prestress_p_Pa, &some.trigger_force_N_per_m, &some.intact})
+    *values = cut(*values, places);
+  return some;
 }
 
 /// Some columns of a field over a whole body, or none of an empty one.
@@ -65,6 +49,13 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
       }
     to.put(values);
   }
+}
+
+solid::Field take_field(MessageBuffer& from) {
+  solid::Field field;
+  field.x = from.take_all<double>();
+  field.y = from.take_all<double>();
+  return field;
 }
 
 /// Rows of a body in groups of a chunk's nodes, at most, or single ones.
@@ -83,7 +74,76 @@ std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
   return groups;
 }
 
+/// Logs the contact updates of several steps for the report.
+class Log final : public UpdateObserver {
+ public:
+  /// @param places  of the subdomain's nodes along the whole interface
+  Log(SlipFinder& finder, const mesh::Subset& places, TractionLog& tractions, SlipUpdates& to)
+      : finder_(finder), places_(places), tractions_(tractions), to_(to) {}
+  void observe(double time_s, const interface::Interface& state, bool changed) override {
+    finder_.find(time_s, state, changed, seen_);
+    tractions_.add(state.t_Pa, state.p_Pa);
+    for (auto& change : seen_.changes) change.node = places_.number_at(change.node);
+    to_.add(seen_);
+  }
+
+ private:
+  SlipFinder& finder_;
+  const mesh::Subset& places_;
+  TractionLog& tractions_;
+  SlipUpdates& to_;
+  SlipUpdate seen_;
+};
+
 }  // namespace
+
+mesh::Subset interface_nodes_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
+  // There each node has its own column; it is asked for each rank.
+  if (mesh.is_interface()) return columns.below(static_cast<int>(std::ssize(mesh.interface_nodes)));
+  const mesh::NodeColumns of_nodes(mesh);
+  std::vector<mesh::Subset::Range> ranges;
+  for (int k = 0; k < std::ssize(mesh.interface_nodes); ++k) {
+    if (!columns.has(of_nodes.column_of(mesh.interface_nodes[static_cast<std::size_t>(k)]))) continue;
+    if (!ranges.empty() && ranges.back().end == k)
+      ++ranges.back().end;
+    else
+      ranges.push_back({k, k + 1});
+  }
+  return mesh::Subset(std::move(ranges));
+}
+
+Decomposition decomposition_of(Partition partition, std::span<const mesh::Mesh* const> bodies) {
+  Decomposition whole{std::move(partition), {}, {}, {}};
+  for (const auto* body : bodies) whole.blocks.push_back(mesh::blocks(*body));
+  for (int k = 0; k < whole.partition.n_subdomains(); ++k) {
+    whole.interface_nodes.push_back(interface_nodes_in(*bodies.front(), whole.partition.all(k)));
+    whole.own_interface_nodes.push_back(own_interface_nodes_in(*bodies.front(), whole.partition.own(k)));
+  }
+  return whole;
+}
+
+void Decomposition::put(MessageBuffer& to) const {
+  to.put(partition.first).put(partition.halo).put(partition.columns_per_step);
+  to.put(partition.steps_per_exchange).put(partition.is_ring);
+  to.put(blocks.size());
+  for (const auto& of_body : blocks) to.put(of_body);
+  for (const auto& places : interface_nodes) to.put(places.ranges());
+  to.put(own_interface_nodes);
+}
+
+Decomposition Decomposition::take(MessageBuffer& from) {
+  Decomposition whole;
+  whole.partition.first = from.take_all<int>();
+  whole.partition.halo = from.take<int>();
+  whole.partition.columns_per_step = from.take<int>();
+  whole.partition.steps_per_exchange = from.take<int>();
+  whole.partition.is_ring = from.take<bool>();
+  for (auto n = from.take<std::size_t>(); n > 0; --n) whole.blocks.push_back(from.take_all<mesh::Grid>());
+  for (int n = whole.partition.n_subdomains(); n > 0; --n)
+    whole.interface_nodes.emplace_back(from.take_all<mesh::Subset::Range>());
+  whole.own_interface_nodes = from.take_all<solid::Span>();
+  return whole;
+}
 
 std::vector<SnapshotChunk> snapshot_chunks(std::span<const mesh::NodeColumns> bodies) {
   std::vector<SnapshotChunk> chunks;
@@ -100,159 +160,105 @@ mesh::NodeColumns::Nodes nodes_of(const SnapshotChunk& chunk, std::span<const me
   return {first, static_cast<int>(body.row(chunk.end_row - 1).end() - first)};
 }
 
-DistributedStepper::DistributedStepper(Processes& processes, const Partition& partition,
-                                       std::unique_ptr<Subdomain> own,
-                                       std::span<const mesh::Mesh* const> bodies)
-    : processes_(processes), partition_(partition), own_(std::move(own)) {
-  for (const auto* body : bodies) columns_.emplace_back(*body);
-  for (int subdomain = 0; subdomain < partition.n_subdomains(); ++subdomain) {
-    all_ranks_.push_back(subdomain);
-    all_interface_nodes_.push_back(interface_nodes_in(*bodies.front(), partition.all(subdomain)));
-    own_interface_nodes_.push_back(own_interface_nodes_in(*bodies.front(), partition.own(subdomain)));
+TractionLog::TractionLog(solid::Span own, int reach) {
+  if (own.end - own.begin <= 2 * reach)
+    places_ = {own};
+  else if (reach > 0)
+    places_ = {{own.begin, own.begin + reach}, {own.end - reach, own.end}};
+  for (const auto& place : places_) width_ += static_cast<std::size_t>(place.end - place.begin);
+}
+
+void TractionLog::add(std::span<const double> t_Pa, std::span<const double> p_Pa) {
+  for (const auto& values : {t_Pa, p_Pa})
+    for (const auto& place : places_)
+      values_.insert(values_.end(), values.begin() + place.begin, values.begin() + place.end);
+}
+
+record::Traction TractionLog::at(std::size_t update, int node) const {
+  std::size_t before = 2 * width_ * update;
+  for (const auto& place : places_) {
+    if (node >= place.begin && node < place.end) {
+      const auto k = before + static_cast<std::size_t>(node - place.begin);
+      return {values_[k], values_[k + width_]};
+    }
+    before += static_cast<std::size_t>(place.end - place.begin);
   }
+  SLIPFRONT_ASSERT(false, "within reach of an end");
+  return {};
+}
+
+DistributedStepper::DistributedStepper(Processes& processes, Decomposition whole,
+                                       std::span<const BodySource> own,
+                                       const interface::ContactModel& contact, const TimeStepping& time,
+                                       const Execution& execution)
+    : processes_(processes), whole_(std::move(whole)) {
+  for (const auto& blocks : whole_.blocks) columns_.emplace_back(blocks);
   snapshot_chunks_ = snapshot_chunks(columns_);
+  auto sharing = execution;
+  sharing.max_steps = partition().steps_per_exchange;
+  stepper_ = std::make_unique<Stepper>(own, contact, time, sharing);
+  halo_ = std::make_unique<Halo>(processes, partition(), *stepper_, sharing.halo_stage_bytes);
 }
 
-DistributedStepper::~DistributedStepper() {
-  const MessageBuffer release = MessageBuffer().put(SubdomainCommand::release);
-  for (int rank = 1; rank < processes_.size(); ++rank) processes_.send(rank, release);
-}
-
-void DistributedStepper::ask(std::span<const int> parts, SubdomainCommand command,
-                             const std::function<MessageBuffer(int subdomain)>& given,
-                             const std::function<void(MessageBuffer& answer)>& take) const {
-  const bool asks_own = !parts.empty() && parts.front() == 0;
-  const auto others = parts.subspan(asks_own ? 1 : 0);
-  or_fail(processes_, [&] {
-    for (const int rank : others) processes_.send(rank, MessageBuffer().put(command).append(given(rank)));
-  });
-  Answers answers(processes_);
-  answers.unless_failed([&] {
-    if (!asks_own) return;
-    auto own = given(0);
-    MessageBuffer answer;
-    own_->execute(command, own, answer);
-    take(answer);
-  });
-  for (const int rank : others) answers.take(rank, take);
-  answers.end();
-}
-
-std::vector<MessageBuffer> DistributedStepper::ask_all(SubdomainCommand command,
-                                                       const MessageBuffer& given) const {
-  return execute_in_tree(processes_, *own_, MessageBuffer().put(command).append(given));
-}
-
-MessageBuffer DistributedStepper::gather_joined(SubdomainCommand command) const {
-  auto answers = ask_all(command, {});
-  return joined(command, answers);
-}
-
-std::vector<MessageBuffer> DistributedStepper::ask(
-    SubdomainCommand command, const std::function<MessageBuffer(int subdomain)>& given) const {
-  std::vector<MessageBuffer> answers;
-  ask(command, given, [&](MessageBuffer& answer) { answers.push_back(std::move(answer)); });
-  return answers;
-}
-
-void DistributedStepper::place(const statics::DistributedField& u_m,
-                               const statics::DistributedField& u_per_shear) {
-  for (int owner = 0; owner < u_m.partition->n_subdomains(); ++owner) {
-    std::array<std::vector<double>, 2> values;  // of one process after the other: no one has all of them
-    ask(
-        std::array{owner}, SubdomainCommand::kept,
-        [&](int) { return std::move(MessageBuffer().put(u_m.number).put(u_per_shear.number)); },
-        [&](MessageBuffer& answer) {
-          for (auto& of_owner : values) of_owner = answer.take_all<double>();
-        });
-    const auto nodes = u_m.partition->nodes_of_subdomain(columns_, owner);
-    const int first = u_m.partition->first_column[static_cast<std::size_t>(owner)];
-    const int end = u_m.partition->first_column[static_cast<std::size_t>(owner) + 1];
-    std::vector<int> reached;
-    for (const int subdomain : all_ranks_)
-      if (const auto columns = partition_.all(subdomain);
-          columns.ranges().front().begin < end && columns.ranges().back().end > first)
-        reached.push_back(subdomain);
-    const auto placed = [&](int subdomain) {
-      const auto columns = partition_.all(subdomain);
-      MessageBuffer buffer;
-      std::size_t before = 0;
-      for (std::size_t b = 0; b < columns_.size(); ++b) {
-        const auto held = columns_[b].of_subdomain(columns);
-        std::vector<mesh::Node> here;
-        std::array<std::vector<double>, 2> some;
-        for (std::size_t k = 0; k < nodes[b].size(); ++k) {
-          if (!columns.has(columns_[b].column_of(nodes[b][k]))) continue;
-          here.push_back(held.local_node(nodes[b][k]));
-          for (std::size_t f = 0; f < 2; ++f) {
-            const auto from = values[f].begin() + static_cast<std::ptrdiff_t>(2 * (before + k));
-            some[f].insert(some[f].end(), from, from + 2);
-          }
-        }
-        before += nodes[b].size();
-        buffer.put(here).put(some[0]).put(some[1]);
-      }
-      return buffer;
-    };
-    ask(reached, SubdomainCommand::place, placed, [](MessageBuffer&) {});
-  }
-}
+DistributedStepper::~DistributedStepper() = default;
 
 void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, const Loads& loads) {
-  const bool is_elsewhere = e.u_m.size() == 0 && e.distributed_u_m;
-  if (is_elsewhere) place(*e.distributed_u_m, *e.distributed_u_per_shear);
-  ask(SubdomainCommand::start, [&](int subdomain) {
+  halo_->finish();
+  auto fields = processes_.scatter([&](int subdomain) {
     MessageBuffer buffer;
-    const auto columns = partition_.all(subdomain);
-    const auto& interface_nodes = all_interface_nodes_[static_cast<std::size_t>(subdomain)];
+    const auto columns = partition().all(subdomain);
     put_columns(columns_.front(), columns, e.u_m, buffer);
     put_columns(columns_.front(), columns, e.u_per_shear, buffer);
     put_columns(columns_.back(), columns, e.below_u_m, buffer);
     put_columns(columns_.back(), columns, e.below_u_per_shear, buffer);
-    buffer.put(static_cast<std::uint8_t>(is_elsewhere && e.distributed_u_m->partition->base_is_relative));
-    buffer.put(cut(e.tractions.t_s_Pa, interface_nodes)).put(cut(e.tractions.p_s_Pa, interface_nodes));
-    buffer.put(cut(e.contact, interface_nodes)).put(top_speed_m_per_s);
-    put_loads(loads, interface_nodes, buffer);
     return buffer;
   });
-  has_finders_ = false;
-  step_ = 0;
+  statics::Equilibrium own;
+  for (auto* field : {&own.u_m, &own.u_per_shear, &own.below_u_m, &own.below_u_per_shear})
+    *field = take_field(fields);
+  fields = {};
+  own.tractions.t_s_Pa = cut(e.tractions.t_s_Pa, own_places());
+  own.tractions.p_s_Pa = cut(e.tractions.p_s_Pa, own_places());
+  own.contact = cut(e.contact, own_places());
+  stepper_->start(own, top_speed_m_per_s, cut(loads, own_places()));
+  own = {};
+  return_freed_memory();
+  halo_->renew();
+  begin_counting();
+}
+
+void DistributedStepper::begin_counting() {
+  finder_.reset();
+  step_ = stepper_->step();
+  counted_before_ = processes_.counters();
+  first_counted_step_ = step_;
 }
 
 void DistributedStepper::set_probes(std::vector<Probe> probes) {
   probes_ = std::move(probes);
-  std::vector<std::vector<std::pair<std::size_t, mesh::Cell>>> of_subdomain(
-      static_cast<std::size_t>(partition_.n_subdomains()));
-  std::vector<int> part_of_probe;
+  std::vector<int> subdomain_of_probe;
+  std::vector<Probe> own;
   for (const auto& probe : probes_) {
     const auto& body = columns_[probe.body];
-    const int column = body.column_of(probe.node[0]);
-    const auto after = std::ranges::upper_bound(partition_.first, column);
+    const auto after = std::ranges::upper_bound(partition().first, body.column_of(probe.node[0]));
     const int subdomain =
-        std::min(static_cast<int>(after - partition_.first.begin()) - 1, partition_.n_subdomains() - 1);
-    part_of_probe.push_back(subdomain);
-    const auto held = body.of_subdomain(partition_.all(subdomain));
-    mesh::Cell node{};
-    std::ranges::transform(probe.node, node.begin(), [&](std::int64_t n) { return held.local_node(n); });
-    of_subdomain[static_cast<std::size_t>(subdomain)].emplace_back(probe.body, node);
+        std::min(static_cast<int>(after - partition().first.begin()) - 1, partition().n_subdomains() - 1);
+    subdomain_of_probe.push_back(subdomain);
+    if (subdomain != processes_.rank()) continue;
+    const auto held = body.of_subdomain(partition().all(subdomain));
+    own.push_back(probe);
+    for (auto& n : own.back().node) n = held.local_node(n);
   }
   probe_order_.resize(probes_.size());
   std::iota(probe_order_.begin(), probe_order_.end(), std::size_t{0});
-  std::ranges::stable_sort(probe_order_, {}, [&](std::size_t p) { return part_of_probe[p]; });
-  ask(SubdomainCommand::set_probes, [&](int subdomain) {
-    const auto& list = of_subdomain[static_cast<std::size_t>(subdomain)];
-    MessageBuffer buffer;
-    buffer.put(static_cast<std::uint64_t>(list.size()));
-    for (const auto& [body, node] : list) buffer.put(body).put(node);
-    return buffer;
-  });
+  std::ranges::stable_sort(probe_order_, {}, [&](std::size_t p) { return subdomain_of_probe[p]; });
+  stepper_->set_probes(std::move(own));
 }
 
-std::vector<double> DistributedStepper::probed(int which) const {
+std::vector<double> DistributedStepper::gathered(const std::vector<double>& own) const {
   std::vector<double> report;
-  for (auto& answer : ask(SubdomainCommand::probed)) {
-    auto values = answer.take_all<double>();
-    if (which > 0) values = answer.take_all<double>();
+  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own))) {
+    const auto values = of_rank.take_all<double>();
     report.insert(report.end(), values.begin(), values.end());
   }
   std::vector<double> values(report.size());
@@ -268,19 +274,21 @@ void DistributedStepper::put_probes_in_order(std::span<const double> report, dou
 
 std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t max_steps,
                                          const StepCallbacks& callbacks) {
-  std::int64_t taken = 0;
-  // Subdomains keep their logs of tractions between commands.
+  // Each rank logs tractions near its ends, and all hold what they are shown of the whole interface.
   constexpr double max_bytes = 16e6;
   int widest = 0;
-  for (const auto& own : own_interface_nodes_) widest = std::max(widest, own.end - own.begin);
-  const double logged =
-      TractionLog::bytes_per_update(widest, observer.finder().halo()) * std::round(step_s() / substep_s());
-  const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / (logged + 1)));
-  while (taken < max_steps) {
+  for (const auto& own : whole_.own_interface_nodes) widest = std::max(widest, own.end - own.begin);
+  const double of_update = TractionLog::bytes_per_update(widest, observer.finder().halo());
+  const double of_row = sizeof(double) * record::history_fields.size() *
+                        static_cast<double>(whole_.own_interface_nodes.back().end);
+  const double bytes = of_update * std::round(step_s() / substep_s()) + of_row;
+  const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / bytes));
+  std::int64_t taken = 0;
+  for (is_interrupted_ = false; taken < max_steps && !is_interrupted_;) {
     const auto n = std::min({max_steps - taken, callbacks.guaranteed_steps(), at_once});
     const auto steps = advance_guaranteed(observer, n, callbacks);
-    taken += steps.taken;
-    if (!steps.goes_on || callbacks.interrupted()) break;
+    taken += steps.shown;
+    if (!steps.goes_on) break;
   }
   return taken;
 }
@@ -296,21 +304,11 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
   }
   step_ = first_step;
   auto& finder = observer.finder();
-  if (!has_finders_)
-    ask(SubdomainCommand::memory, [&](int subdomain) {
-      const auto& known = finder.memory();
-      const auto& interface_nodes = all_interface_nodes_[static_cast<std::size_t>(subdomain)];
-      MessageBuffer buffer;
-      buffer.put(known.time_s);
-      for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
-        buffer.put(cut(*values, interface_nodes));
-      buffer.put(cut(known.slipping, interface_nodes)).put(finder.halo()).put(finder.creep_m_per_s());
-      return buffer;
-    });
-  has_finders_ = true;
-
-  auto answers = ask_all(SubdomainCommand::advance, MessageBuffer().put(is_sampled));
-  auto report = StepReport::take_joined(answers);
+  if (!finder_) make_finder(finder);
+  auto own = advance_own(is_sampled);
+  own.is_interrupted = callbacks.interrupted();
+  auto report = StepReport::joined(processes_.all_gather(packed(own)));
+  is_interrupted_ = report.is_interrupted;
   SLIPFRONT_ASSERT(report.memory.t_Pa.size() == finder.memory().t_Pa.size(), "the subdomains have all nodes");
   finder.memory() = std::move(report.memory);
   add_tractions_of_others(report.seen, finder.n_around());
@@ -343,97 +341,154 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
   return {n_steps, true};
 }
 
-void DistributedStepper::add_tractions_of_others(SlipUpdates& seen, std::size_t n_around) const {
+void DistributedStepper::make_finder(const SlipFinder& whole) {
+  const auto& known = whole.memory();
+  SlipFinder::Memory memory{known.time_s, cut(known.t_Pa, own_places()), cut(known.p_Pa, own_places()),
+                            cut(known.strength_Pa, own_places()), cut(known.slipping, own_places())};
+  const auto own = stepper_->bodies().front().interface_side().own;
+  finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
+                  whole.halo(), whole.creep_m_per_s());
+  log_ = TractionLog(own, whole.halo());
+}
+
+StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_sampled) {
+  const auto n_steps = std::ssize(is_sampled);
+  const auto first_step = stepper_->step();
+  const std::size_t n_values = displacement_values(stepper_->probes());
+  StepReport report;
+  report.displacements.resize(n_values * static_cast<std::size_t>(n_steps));
+  log_.clear();
+  log_.add(finder_->memory().t_Pa, finder_->memory().p_Pa);
+  Log log(*finder_, own_places(), log_, report.seen);
+  record::History samples;
+  std::int64_t next_sample = 0;
+  StepCallbacks callbacks;
+  callbacks.sample = [&]() -> record::History* {
+    return is_sampled[static_cast<std::size_t>(next_sample++)] != 0 ? &samples : nullptr;
+  };
+  callbacks.may_continue = [&](const SlipRates& of_step) {
+    report.rates.push_back(of_step);
+    return true;
+  };
+  if (n_values > 0)
+    callbacks.displacements = [&](std::int64_t step) {
+      return report.displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
+    };
+  halo_->advance(log, n_steps, callbacks);
+  const auto& memory = finder_->memory();
+  // Of nodes along the interface only own ones.
+  const auto own = stepper_->bodies().front().interface_side().own;
+  const auto width = stepper_->interface_state().size();
+  const auto append_own = [&]<class T>(const std::vector<T>& values, std::size_t row, std::vector<T>& to) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * width);
+    to.insert(to.end(), begin + own.begin, begin + own.end);
+  };
+  report.memory.time_s = memory.time_s;
+  append_own(memory.t_Pa, 0, report.memory.t_Pa);
+  append_own(memory.p_Pa, 0, report.memory.p_Pa);
+  append_own(memory.strength_Pa, 0, report.memory.strength_Pa);
+  append_own(memory.slipping, 0, report.memory.slipping);
+  for (std::size_t f = 0; f < report.samples.size(); ++f)
+    for (std::size_t row = 0; row < samples.time_s.size(); ++row)
+      append_own(samples.*record::history_fields[f].member, row, report.samples[f]);
+  return report;
+}
+
+void DistributedStepper::add_tractions_of_others(SlipUpdates& seen, std::size_t n_around) {
   const int reach = static_cast<int>(n_around / 2);
-  struct Gap {           // of some nodes around an onset, which another subdomain knows
-    std::size_t at = 0;  // where their tractions are to go in SlipUpdates::around
+  struct Gap {  // a node near an onset that another subdomain owns
+    std::size_t owner = 0, update = 0;
+    int node = 0;
+    std::size_t at = 0;  // where its tractions are to go in SlipUpdates::around
     double share = 0;
   };
-  struct Asked {
-    std::vector<TractionRequest> wanted;
-    std::vector<Gap> gaps;
-  };
-  std::map<int, Asked> of_subdomain;
+  std::vector<Gap> gaps;
+  const auto& owned = whole_.own_interface_nodes;
   std::size_t first_around = 0;
   for (std::size_t c = 0; c < seen.changes.size(); ++c) {
     const auto& change = seen.changes[c];
     if (!change.begins) continue;
-    auto other = std::ranges::upper_bound(own_interface_nodes_, change.node - reach, {}, &solid::Span::end);
-    for (; other != own_interface_nodes_.end() && other->begin <= change.node + reach; ++other) {
+    auto other = std::ranges::upper_bound(owned, change.node - reach, {}, &solid::Span::end);
+    for (; other != owned.end() && other->begin <= change.node + reach; ++other) {
       if (change.node >= other->begin && change.node < other->end) continue;  // it knows them itself
-      const auto subdomain = static_cast<int>(other - own_interface_nodes_.begin());
-      const int begin = std::max(other->begin, change.node - reach);
-      const int end = std::min(other->end, change.node + reach + 1);
-      const int place = all_interface_nodes_[static_cast<std::size_t>(subdomain)].place_of(begin);
-      auto& asked = of_subdomain[subdomain];
-      asked.wanted.push_back({seen.update[c], {place, place + end - begin}});
-      asked.gaps.push_back(
-          {first_around + static_cast<std::size_t>(begin - (change.node - reach)), change.share});
+      for (int n = std::max(other->begin, change.node - reach);
+           n < std::min(other->end, change.node + reach + 1); ++n)
+        gaps.push_back({static_cast<std::size_t>(other - owned.begin()),
+                        static_cast<std::size_t>(seen.update[c]), n,
+                        first_around + static_cast<std::size_t>(n - (change.node - reach)), change.share});
     }
     first_around += n_around;
   }
   SLIPFRONT_ASSERT(seen.around.size() == first_around, "tractions around each onset");
-  std::vector<int> parts;
-  for (const auto& asked : of_subdomain) parts.push_back(asked.first);
-  auto next = of_subdomain.begin();
-  ask(
-      parts, SubdomainCommand::tractions,
-      [&](int subdomain) { return std::move(MessageBuffer().put(of_subdomain[subdomain].wanted)); },
-      [&](MessageBuffer& answer) {
-        const auto& [wanted, gaps] = next->second;
-        for (std::size_t k = 0; k < wanted.size(); ++k)
-          for (int n = 0; n < wanted[k].nodes.end - wanted[k].nodes.begin; ++n) {
-            const auto before = answer.take<record::Traction>();
-            const auto after = answer.take<record::Traction>();
-            seen.around[gaps[k].at + static_cast<std::size_t>(n)] =
-                traction_between(before, after, gaps[k].share);
-          }
-        ++next;
-      });
+  if (gaps.empty()) return;  // on all ranks
+  MessageBuffer own;
+  for (const auto& gap : gaps) {
+    if (gap.owner != rank()) continue;
+    const int place = own_places().place_of(gap.node);
+    own.put(traction_between(log_.at(gap.update, place), log_.at(gap.update + 1, place), gap.share));
+  }
+  auto of_ranks = processes_.all_gather(own);
+  for (const auto& gap : gaps) seen.around[gap.at] = of_ranks[gap.owner].take<record::Traction>();
+}
+
+std::vector<double> DistributedStepper::probed_u_m() const {
+  halo_->finish();
+  return gathered(stepper_->probed_u_m());
+}
+
+std::vector<double> DistributedStepper::probed_v_m_per_s() const {
+  halo_->finish();
+  return gathered(stepper_->probed_v_m_per_s());
+}
+
+double DistributedStepper::sum(double own) const {
+  double sum = 0;
+  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own))) sum += of_rank.take<double>();
+  return sum;
 }
 
 record::Energies DistributedStepper::energies() {
-  auto sum = gather_joined(SubdomainCommand::energies).take<record::Energies>();
+  halo_->finish();
+  record::Energies sum;
+  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(stepper_->energies())))
+    add_terms(sum, of_rank.take<record::Energies>());
   sum.time_s = time_s();
   return sum;
 }
 
-std::vector<SubdomainMeasures> DistributedStepper::measures() const {
-  return gather_joined(SubdomainCommand::measures).take_all<SubdomainMeasures>();
-}
-
 std::vector<SubdomainCost> DistributedStepper::costs() const {
+  const auto& now = processes_.counters();
+  const SubdomainCost own = {.steps = stepper_->step() - first_counted_step_,
+                             .messages = now.messages - counted_before_.messages,
+                             .bytes = now.bytes - counted_before_.bytes,
+                             .computing_s = halo_->computing_s(),
+                             .exchange_s = now.exchange_s - counted_before_.exchange_s,
+                             .collective_s = now.collective_s - counted_before_.collective_s};
   std::vector<SubdomainCost> costs;
-  for (const auto& m : measures()) costs.push_back(m.cost);
+  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own)))
+    costs.push_back(of_rank.take<SubdomainCost>());
   return costs;
 }
 
 double DistributedStepper::node_updates_per_step() const {
-  double sum = 0;
-  for (const auto& m : measures()) sum += m.node_updates_per_step;
-  return sum;
+  return sum(stepper_->node_updates_per_step());
 }
 
 double DistributedStepper::kinetic_energy_J_per_m() const {
-  double sum = 0;
-  for (const auto& m : measures()) sum += m.kinetic_J_per_m;
-  return sum;
+  halo_->finish();
+  return sum(stepper_->kinetic_energy_J_per_m());
 }
 
 double DistributedStepper::mass_kg_per_m() const {
-  double sum = 0;
-  for (const auto& m : measures()) sum += m.mass_kg_per_m;
-  return sum;
+  return sum(stepper_->mass_kg_per_m());
 }
 
 double DistributedStepper::energy_of_tractions_J_per_m() const {
-  double mass = 0, a = 0;
-  for (const auto& m : measures()) {
-    mass += m.plate_mass_kg_per_m;
-    a = std::max(a, m.largest_acceleration_m_per_s2);
-  }
-  const double v = stable_step_s() * a;
-  return 0.5 * mass * v * v;
+  halo_->finish();
+  double a_m_per_s2 = stepper_->largest_acceleration_m_per_s2();
+  processes_.reduce_max(std::span(&a_m_per_s2, 1));
+  const double v_m_per_s = stable_step_s() * a_m_per_s2;
+  return 0.5 * sum(stepper_->bodies().front().mass_kg_per_m()) * v_m_per_s * v_m_per_s;
 }
 
 std::int64_t DistributedStepper::n_nodes() const {
@@ -449,56 +504,77 @@ std::size_t DistributedStepper::snapshot_chunk_bytes() const {
 }
 
 std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
+  halo_->finish();
   const auto& chunk = snapshot_chunks_[static_cast<std::size_t>(k)];
-  const auto& body = columns_[static_cast<std::size_t>(chunk.body)];
+  const auto body = static_cast<std::size_t>(chunk.body);
+  // In rows [first, end) of a body those of a subdomain's own columns.
+  const auto for_own_nodes = [&](const mesh::NodeColumns& columns, int subdomain, auto&& f) {
+    const auto own = partition().own(subdomain);
+    for (int r = chunk.first_row; r < chunk.end_row; ++r) f(columns.nodes(r, {own.begin, own.end}));
+  };
+  std::vector<double> own;
+  for_own_nodes(stepper_->bodies()[body].columns(), processes_.rank(), [&](const auto& nodes) {
+    stepper_->append(chunk.component, body, static_cast<mesh::Node>(nodes.first),
+                     static_cast<mesh::Node>(nodes.end()), own);
+  });
   const auto all = nodes_of(chunk, columns_);
-  std::vector<double> values(static_cast<std::size_t>(all.count));
-  int subdomain = 0;
-  ask(
-      SubdomainCommand::snapshot, [&](int) { return MessageBuffer().put(chunk); },
-      [&](MessageBuffer& answer) {
-        const auto own = partition_.own(subdomain++);
-        const auto of_subdomain = answer.take_all<double>();
-        auto from = of_subdomain.begin();
-        for (int r = chunk.first_row; r < chunk.end_row; ++r) {
-          const auto nodes = body.nodes(r, {own.begin, own.end});
-          std::copy_n(from, nodes.count, values.begin() + (nodes.first - all.first));
-          from += nodes.count;
-        }
-      });
+  std::vector<double> values(processes_.is_root() ? static_cast<std::size_t>(all.count) : 0);
+  processes_.gather(std::move(MessageBuffer().put(own)), [&](int subdomain, MessageBuffer& buffer) {
+    const auto of_subdomain = buffer.take_all<double>();
+    auto from = of_subdomain.begin();
+    for_own_nodes(columns_[body], subdomain, [&](const auto& nodes) {
+      std::copy_n(from, nodes.count, values.begin() + (nodes.first - all.first));
+      from += nodes.count;
+    });
+  });
   return values;
 }
 
 void DistributedStepper::keep(const std::function<void(const StateByNode& chunk)>& take) {
-  int number = 0;
-  ask(SubdomainCommand::keep, nothing, [&](MessageBuffer& answer) {
-    auto chunk = StateByNode::take(answer);
-    answer = {};
+  halo_->finish();
+  MessageBuffer own;
+  motion::keep(stepper_->state(own_places()), stepper_->step()).put(own);
+  processes_.gather(std::move(own), [&](int subdomain, MessageBuffer& buffer) {
+    auto chunk = StateByNode::take(buffer);
+    buffer = {};
     chunk.step = step_;
-    chunk.number = number++;
-    chunk.n_chunks = partition_.n_subdomains();
+    chunk.number = subdomain;
+    chunk.n_chunks = partition().n_subdomains();
     take(chunk);
   });
 }
 
 void DistributedStepper::restore(const Loads& loads, const std::function<StateByNode()>& next) {
+  halo_->finish();
+  stepper_->set_loads(cut(loads, own_places()));
+  StateRestorer restorer(stepper_->state(own_places()));
   for (bool is_last = false; !is_last;) {
-    const auto chunk = next();
-    ask(SubdomainCommand::restore, [&](int subdomain) {
+    StateByNode chunk;
+    is_last = processes_
+                  .from_root([&](MessageBuffer& to) {
+                    chunk = next();
+                    chunk.require_of(columns_);
+                    to.put(chunk.is_last());
+                  })
+                  .take<bool>();
+    auto part = processes_.scatter([&](int subdomain) {
       // As many subdomains as kept them go on with their own sums; of another number the first one has them
       // all.
       const bool has_sums =
-          chunk.n_chunks == partition_.n_subdomains() ? subdomain == chunk.number : subdomain == 0;
-      const auto& interface_nodes = all_interface_nodes_[static_cast<std::size_t>(subdomain)];
+          chunk.n_chunks == partition().n_subdomains() ? subdomain == chunk.number : subdomain == 0;
       MessageBuffer buffer;
-      put_loads(loads, interface_nodes, buffer);
-      chunk.in(partition_.all(subdomain), interface_nodes, columns_, has_sums).put(buffer);
+      chunk
+          .in(partition().all(subdomain), whole_.interface_nodes[static_cast<std::size_t>(subdomain)],
+              columns_, has_sums)
+          .put(buffer);
       return buffer;
     });
-    step_ = chunk.step;
-    is_last = chunk.is_last();
+    processes_.together([&] { restorer.add(StateByNode::take(part)); });
   }
-  has_finders_ = false;
+  processes_.together([&] { stepper_->update_after_restore(restorer.finish()); });
+  return_freed_memory();
+  halo_->begin_anew();
+  begin_counting();
 }
 
 }  // namespace slipfront::motion

@@ -61,6 +61,13 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   return list;
 }
 
+void EventRun::require_restored() {
+  run_.require_restored();
+  const auto& monitor = run_.get<BlowUpMonitor>();
+  require_possible(std::ranges::all_of(energies(), [&](const auto& row) { return monitor.balances(row); }),
+                   "energies");
+}
+
 Event EventRun::run() {
   const End end = run_.run();
   Event event;

@@ -79,6 +79,9 @@ class EventRun {
 
   /// All that changes while the monitor is asked, but for the stepper and what an output would take.
   void serialize(StateArchive& archive) { run_.archive(archive); }
+  /// After that was read, with the stepper's motion restored.
+  /// @throws StateError where that does not come to what was read
+  void require_restored();
 
  private:
   Observers observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output, Observers more);

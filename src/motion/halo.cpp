@@ -106,7 +106,7 @@ void Halo::add_neighbour(int rank, bool is_below, solid::Span out, solid::Span i
       stepper_.visit_columns(columns, stage.rows, stage.has_interface,
                              [&](const auto* values, std::size_t n) { bytes += n * sizeof(*values); });
       if (bytes > Processes::max_transfer_bytes)
-        throw UserError("a halo of {:.3g} bytes is too large for a message; use more processes",
+        throw UserError("a halo of {:.3g} bytes is too large for a message; use more ranks",
                         static_cast<double>(bytes));
       return std::vector<std::byte>(bytes);
     };

@@ -81,7 +81,9 @@ void ObservedRun::archive(StateArchive& archive) {
     require_possible(name == expected, "observers");
     observer->archive(archive);
   }
-  if (!archive.is_loading()) return;
+}
+
+void ObservedRun::require_restored() {
   Pause pause(*stepper_);
   require_possible(finder().memory().time_s <= (1 + 1e-12) * pause.now().time_s(), "times of motion");
   for (const auto& observer : observers_) observer->restored(pause);

@@ -37,8 +37,9 @@ class ObservedRun final : public SlipObserver {
   }
 
   /// All that changes during a run, in a pause, but for the stepper's.
-  /// @throws StateError where the stepper's motion, restored before, does not come to what is read
   void archive(StateArchive& archive);
+  /// After that was read. @throws StateError where the stepper's motion, restored before, does not come to it
+  void require_restored();
 
  private:
   std::optional<End> end(Pause& pause);

@@ -50,9 +50,10 @@ class Pause {
 /// list in their order.
 ///
 /// Several steps are taken in one sweep through memory. Those functions that are called meanwhile see the
-/// steps in their order, perhaps in another thread, and may look only at what they are given; on several
-/// processes, some steps at once are shown when they have been taken. Whoever needs more asks for a pause.
-/// What an observer throws ends the run: from the first kind for good, in a pause the motion is whole.
+/// steps in their order, perhaps in another thread, and may look only at what they are given; of several
+/// ranks each shows the same of the whole interface, some steps at once when they have been taken. Whoever
+/// needs more asks for a pause. What an observer throws ends the run: from the first kind for good, in a
+/// pause the motion is whole.
 class Observer {
  public:
   virtual ~Observer() = default;

@@ -16,7 +16,7 @@ namespace {
 /// Most steps between two exchanges: what several steps in one sweep through memory gain is gained with
 /// these.
 constexpr int max_steps_per_exchange = 16;
-/// A halo on either side adds this part of a process's own work at most, if that allows a step.
+/// A halo on either side adds this part of a rank's own work at most, if that allows a step.
 constexpr double tolerated_halo = 0.1;
 
 }  // namespace
@@ -83,7 +83,7 @@ std::string reason_against(const Partition& partition, int widest_cell, int corn
     min_width = std::max(min_width, (others + n_subdomains - 2) / (n_subdomains - 1));
   }
   if (width < min_width)
-    return fmt::format("{} processes have {} columns of elements each, fewer than the {} that they need",
+    return fmt::format("{} ranks have {} columns of elements each, fewer than the {} that they need",
                        n_subdomains, width, min_width);
   const int last = partition.n_columns() - 1;
   const auto is_at_corner = [&](int column) { return std::min(column, last - column) <= corner; };
@@ -92,7 +92,7 @@ std::string reason_against(const Partition& partition, int widest_cell, int corn
     const int begin = own.begin - partition.halo_below(subdomain),
               end = own.end - 1 + partition.halo_above(subdomain);
     if ((begin > 0 && is_at_corner(begin)) || (end < last && is_at_corner(end)))
-      return fmt::format("of {} processes one would compute a subdomain that ends at a rounded corner",
+      return fmt::format("of {} ranks one would compute a subdomain that ends at a rounded corner",
                          n_subdomains);
   }
   return {};
@@ -100,7 +100,7 @@ std::string reason_against(const Partition& partition, int widest_cell, int corn
 
 constexpr std::int64_t max_nodes = std::numeric_limits<mesh::Node>::max();
 
-/// Nodes of a column of the highest body of which no process has all; 0 where one has.
+/// Nodes of a column of the highest body of which no rank has all; 0 where one has.
 std::int64_t nodes_of_column_in_parts(std::span<const BodySource> bodies) {
   std::int64_t most = 0;
   for (const auto& body : bodies)
@@ -147,11 +147,11 @@ Partition partition_bodies(std::span<const BodySource> bodies, std::span<const B
       std::clamp(of_column * n_columns / max_nodes, std::int64_t{n_subdomains} + 1, n_columns));
   while (is_possible(least) && !can_number(divided(least))) ++least;
   throw UserError(
-      "each of {} processes would have up to {:.3g} nodes of a body, more than the {} that it can "
+      "each of {} ranks would have up to {:.3g} nodes of a body, more than the {} that it can "
       "number; use {}",
       n_subdomains, static_cast<double>(of_column * columns_of_widest(partition)), max_nodes,
-      is_possible(least) ? fmt::format("more processes, at least {}", least)
-                         : "larger elements: more processes would have too few columns");
+      is_possible(least) ? fmt::format("more ranks, at least {}", least)
+                         : "larger elements: more ranks would have too few columns");
 }
 
 }  // namespace slipfront::motion

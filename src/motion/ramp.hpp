@@ -55,7 +55,10 @@ class RampRun {
   Ramp run();
 
   /// All that changes while the monitor is asked, but for the stepper.
-  void serialize(StateArchive& archive) { run_.archive(archive); }
+  void serialize(StateArchive& archive) {
+    run_.archive(archive);
+    if (archive.is_loading()) run_.require_restored();
+  }
 
  private:
   Stepper& stepper_;

@@ -33,6 +33,10 @@ struct SlipChange {
   bool begins = false;
   double time_s = 0;  ///< of a beginning located inside the (sub-)step
   double share = 1;   ///< of the (sub-)step that has passed then
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(node, begins, time_s, share);
+  }
 };
 
 /// Changes of slip in one contact update.
@@ -57,6 +61,10 @@ class SlipFinder {
     double time_s = 0;
     std::vector<double> t_Pa, p_Pa, strength_Pa;
     std::vector<std::uint8_t> slipping;
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(time_s, t_Pa, p_Pa, strength_Pa, slipping);
+    }
   };
 
   /// @param before  the state at time 0, before the first (sub-)step

@@ -72,11 +72,16 @@ void StateByNode::require_possible() const {
                               "numbers");
 }
 
+void StateByNode::require_of(std::span<const mesh::NodeColumns> bodies) const {
+  for (const auto& run : runs)
+    require_of_these(run.body < bodies.size() &&
+                     run.key + static_cast<std::int64_t>(run.count) <= bodies[run.body].n_nodes());
+}
+
 StateByNode StateByNode::in(const mesh::Subset& columns, const mesh::Subset& interface_nodes,
                             std::span<const mesh::NodeColumns> bodies, bool has_sums) const {
   StateByNode some{number, n_chunks, step, {}, {}, has_sums ? sums : std::vector<double>(), flags};
   for_each_entry([&](const Run& run, std::int64_t key, std::span<const double> of_entry) {
-    require_of_these(run.body < bodies.size() && key < bodies[run.body].n_nodes());
     if (run.by == StateKey::place ? !interface_nodes.has(static_cast<int>(key))
                                   : !columns.has(bodies[run.body].global_column_of(key)))
       return;

@@ -87,10 +87,12 @@ struct StateByNode {
   bool is_last() const { return number + 1 == n_chunks; }
   /// @throws StateError where runs have other lengths than they say, or values are no numbers
   void require_possible() const;
+  /// @throws StateError where it is of other bodies
+  void require_of(std::span<const mesh::NodeColumns> bodies) const;
   /// What is in some columns, and places along the interface.
   /// @param bodies    the whole ones
   /// @param has_sums  whether the sums go with it
-  /// @throws StateError where it is of other bodies
+  /// @pre it is of these bodies
   StateByNode in(const mesh::Subset& columns, const mesh::Subset& interface_nodes,
                  std::span<const mesh::NodeColumns> bodies, bool has_sums) const;
 

@@ -35,7 +35,8 @@ SlipUpdates joined_slips(std::span<const StepReport> parts) {
   };
   std::vector<Change> changes;
   std::size_t n_around = 0;
-  for (const auto& [memory, rates, seen, samples, displacements] : parts) {
+  for (const auto& subdomain : parts) {
+    const auto& seen = subdomain.seen;
     for (std::size_t k = 0; k < all.moves.size(); ++k) all.moves[k] |= seen.moves[k];
     const auto beginnings = std::ranges::count_if(seen.changes, &SlipChange::begins);
     if (beginnings > 0) n_around = seen.around.size() / static_cast<std::size_t>(beginnings);
@@ -80,41 +81,12 @@ const SlipUpdate& SlipUpdateIterator::next() {
   return seen_;
 }
 
-void StepReport::put(MessageBuffer& to) const {
-  to.put(memory.time_s).put(memory.t_Pa).put(memory.p_Pa).put(memory.strength_Pa).put(memory.slipping);
-  to.put(rates);
-  to.put(seen.time_s).put(seen.moves).put(seen.update).put(seen.changes).put(seen.around);
-  for (const auto& field : samples) to.put(field);
-  to.put(displacements);
-}
-
-StepReport StepReport::take(MessageBuffer& from) {
-  StepReport report;
-  report.memory.time_s = from.take<double>();
-  for (auto* values : {&report.memory.t_Pa, &report.memory.p_Pa, &report.memory.strength_Pa})
-    *values = from.take_all<double>();
-  report.memory.slipping = from.take_all<std::uint8_t>();
-  report.rates = from.take_all<SlipRates>();
-  report.seen.time_s = from.take_all<double>();
-  report.seen.moves = from.take_all<std::uint8_t>();
-  report.seen.update = from.take_all<std::int32_t>();
-  report.seen.changes = from.take_all<SlipChange>();
-  report.seen.around = from.take_all<record::Traction>();
-  for (auto& field : report.samples) field = from.take_all<double>();
-  report.displacements = from.take_all<double>();
-  return report;
-}
-
-StepReport StepReport::take_joined(std::span<MessageBuffer> from) {
+StepReport StepReport::joined(std::vector<MessageBuffer> of_subdomains) {
   std::vector<StepReport> parts;
-  for (auto& buffer : from) {
-    parts.push_back(take(buffer));
+  for (auto& buffer : of_subdomains) {
+    parts.push_back(unpacked<StepReport>(buffer));
     buffer = {};
   }
-  return joined(parts);
-}
-
-StepReport StepReport::joined(std::span<const StepReport> parts) {
   const auto& first = parts.front();
   StepReport all;
   all.memory.time_s = first.memory.time_s;
@@ -126,6 +98,7 @@ StepReport StepReport::joined(std::span<const StepReport> parts) {
     append(all.memory.p_Pa, subdomain.memory.p_Pa);
     append(all.memory.strength_Pa, subdomain.memory.strength_Pa);
     append(all.memory.slipping, subdomain.memory.slipping);
+    all.is_interrupted = all.is_interrupted || subdomain.is_interrupted;
   }
   all.rates.resize(first.rates.size());
   for (const auto& subdomain : parts)

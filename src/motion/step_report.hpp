@@ -9,7 +9,7 @@
 
 #include "motion/slip_finder.hpp"
 #include "motion/time_stepper.hpp"
-#include "processes/message_buffer.hpp"
+#include "processes/processes.hpp"
 #include "record/record.hpp"
 
 namespace slipfront::motion {
@@ -23,6 +23,10 @@ struct SlipUpdates {
   std::vector<record::Traction> around;  ///< at the beginnings among them, [beginnings x n_around]
 
   void add(const SlipUpdate& seen);
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(time_s, moves, update, changes, around);
+  }
 };
 
 /// Iterates over the updates.
@@ -39,20 +43,23 @@ class SlipUpdateIterator {
   SlipUpdate seen_;
 };
 
-/// Report of a subdomain, or of neighbouring ones, on the steps of a command. Nodes are the owned interface
-/// nodes, by their global numbers.
+/// Report of a subdomain, or of all of them, on some steps. Nodes are the owned interface nodes, by their
+/// numbers along the whole interface.
 struct StepReport {
   SlipFinder::Memory memory;     ///< of the last update
   std::vector<SlipRates> rates;  ///< [steps]
   SlipUpdates seen;
   std::array<std::vector<double>, record::history_fields.size()> samples;  ///< each [rows x nodes]
   std::vector<double> displacements;  ///< [steps x displacement_values of their probes]
+  bool is_interrupted = false;        ///< whether the rank is to end the run
 
-  void put(MessageBuffer& to) const;
-  static StepReport take(MessageBuffer& from);
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(memory, rates, seen, displacements, is_interrupted);
+    for (auto& field : samples) archive(field);
+  }
   /// Of subdomains side by side, in their order.
-  static StepReport joined(std::span<const StepReport> parts);
-  static StepReport take_joined(std::span<MessageBuffer> from);
+  static StepReport joined(std::vector<MessageBuffer> of_subdomains);
 };
 
 }  // namespace slipfront::motion

@@ -126,6 +126,8 @@ class Stepper : public TimeStepper {
   /// the impulses set swinging within the step.
   solid::Field mean_velocity_m_per_s() const { return bodies_.front().mean_velocity_m_per_s(); }
   const interface::Interface& interface_state() const { return coupling_.state(); }
+  /// Of an interface node, see Coupling::slip_m.
+  double slip_m(std::size_t i) const { return coupling_.slip_m(i); }
 
   SlipRates slip_rates() const { return coupling_.slip_rates(); }
   double largest_acceleration_m_per_s2() const { return coupling_.largest_acceleration_m_per_s2(); }

@@ -11,6 +11,7 @@ Snapshot TimeStepper::snapshot() const {
     const auto chunk = snapshot_chunk(k);
     values.insert(values.end(), chunk.begin(), chunk.end());
   }
+  if (values.empty()) return {time_s(), {}, {}};
   const auto n = static_cast<std::size_t>(n_nodes());
   Snapshot all{time_s(), solid::Field(n), solid::Field(n)};
   auto from = values.begin();

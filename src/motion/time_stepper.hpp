@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/interruption.hpp"
 #include "motion/every.hpp"
 #include "motion/probes.hpp"
 #include "motion/slip_finder.hpp"
@@ -24,6 +25,10 @@ struct SlipRates {
   double fastest_m_per_s = 0;
   double fastest_slipping_m_per_s = 0;  ///< of nodes in contact that slip
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(finite, fastest_m_per_s, fastest_slipping_m_per_s);
+  }
   /// Those of other nodes.
   void add(const SlipRates& more) {
     finite &= more.finite;
@@ -91,6 +96,8 @@ class TimeStepper {
   /// @throws what observer and callbacks throw; after that only start may follow.
   virtual std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
                                const StepCallbacks& callbacks) = 0;
+  /// Whether the run is to be interrupted; on all ranks the same.
+  virtual bool is_interrupted() const { return is_interruption_wanted(); }
 
   /// Energies and works up to the last half (sub-)step.
   virtual record::Energies energies() = 0;
@@ -101,7 +108,7 @@ class TimeStepper {
   virtual double energy_of_tractions_J_per_m() const = 0;
 
   /// A snapshot is written in chunks, so that no rank holds all of it: u_x, u_y, v_x, v_y [nodes], one after
-  /// the other, in so many.
+  /// the other, in so many; of several ranks rank 0 gets them, the others nothing.
   virtual int n_snapshot_chunks() const = 0;
   /// Bytes of the largest of them.
   virtual std::size_t snapshot_chunk_bytes() const = 0;
@@ -115,7 +122,7 @@ class TimeStepper {
   /// of the same bodies and stepping then goes on as that one would, to the last bit; by another number of
   /// ranks but for the order of summation.
   /// @param loads  with which the motion began
-  /// @throws StateError where the state is of other bodies or loads
+  /// @throws StateError where the state is of other bodies or loads; on several ranks see Processes::together
   virtual void restore(const Loads& loads, const std::function<StateByNode()>& next) = 0;
 
  protected:

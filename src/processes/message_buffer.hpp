@@ -22,8 +22,6 @@ class MessageBuffer {
   explicit MessageBuffer(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {}
 
   std::span<const std::byte> bytes() const { return bytes_; }
-  /// Whether all has been read.
-  bool is_empty() const { return next_ == bytes_.size(); }
 
   template <class T>
   requires std::is_trivially_copyable_v<T> MessageBuffer& put(const T& value) {
@@ -69,7 +67,6 @@ class MessageBuffer {
     return {text.begin(), text.end()};
   }
 
- private:
   MessageBuffer& put_bytes(const void* from, std::size_t count) {
     const auto size = bytes_.size();
     bytes_.resize(size + count);
@@ -82,6 +79,7 @@ class MessageBuffer {
     next_ += count;
   }
 
+ private:
   std::vector<std::byte> bytes_;
   std::size_t next_ = 0;
 };

@@ -148,7 +148,7 @@ class MpiProcesses final : public Processes {
   int on_this_machine() const override { return on_machine_; }
 
   void send(int to, const MessageBuffer& buffer) override {
-    const Waiting waiting(counters_.command_s);
+    const Waiting waiting(counters_.collective_s);
     const auto bytes = buffer.bytes();
     const auto n = static_cast<std::uint64_t>(bytes.size());
     MPI_Request request = MPI_REQUEST_NULL;
@@ -163,7 +163,7 @@ class MpiProcesses final : public Processes {
   }
 
   MessageBuffer receive(int from) override {
-    const Waiting waiting(counters_.command_s);
+    const Waiting waiting(counters_.collective_s);
     std::uint64_t n = 0;
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Irecv(&n, 1, MPI_UINT64_T, from, tag, MPI_COMM_WORLD, &request);
@@ -175,19 +175,6 @@ class MpiProcesses final : public Processes {
       patience_.wait(request);
     }
     return MessageBuffer(std::move(bytes));
-  }
-
-  MessageBuffer receive_any() override {
-    MPI_Status status;
-    {
-      const Waiting waiting(counters_.command_s);
-      patience_.wait_until([&] {
-        int is_there = 0;
-        MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &is_there, &status);
-        return is_there != 0;
-      });
-    }
-    return receive(status.MPI_SOURCE);
   }
 
   std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {
@@ -210,7 +197,7 @@ class MpiProcesses final : public Processes {
   }
 
   void reduce_max(std::span<double> values) override {
-    const Waiting waiting(counters_.command_s);
+    const Waiting waiting(counters_.collective_s);
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
                    MPI_COMM_WORLD, &request);
@@ -218,11 +205,11 @@ class MpiProcesses final : public Processes {
     count(values.size_bytes());
   }
 
-  [[noreturn]] void fail(const std::string& message) override {
-    const auto line = "slipfront: process " + std::to_string(rank_) + ": " + message + "\n";
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+  [[noreturn]] void fail(int exit_code, const std::string& line) override {
+    const auto with_end = line + "\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, with_end.data(), with_end.size());
     reserve_ = std::vector<std::byte>();
-    MPI_Abort(MPI_COMM_WORLD, 1);
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
     std::abort();
   }
 
@@ -246,33 +233,20 @@ class MpiProcesses final : public Processes {
   std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
 };
 
-/// MPI for one that was started alone, whose libraries may use it until the end.
-std::unique_ptr<Processes>& alone() {
-  static std::unique_ptr<Processes> processes;
-  return processes;
-}
-
 }  // namespace
 
 std::unique_ptr<Processes> join_processes(int& argc, char**& argv) {
-  if (!is_started_by_mpi()) return nullptr;
+  if (!is_started_by_mpi()) return std::make_unique<OneProcess>();
   auto processes = std::make_unique<MpiProcesses>(argc, argv);
-  if (processes->size() > 1) return processes;
-  alone() = std::move(processes);
-  return nullptr;
-}
-
-void leave_processes() {
-  alone().reset();
+  if (processes->size() == 1) return std::make_unique<OneProcess>();
+  return processes;
 }
 
 #else
 
 std::unique_ptr<Processes> join_processes(int&, char**&) {
-  return nullptr;
+  return std::make_unique<OneProcess>();
 }
-
-void leave_processes() {}
 
 #endif
 

@@ -5,11 +5,11 @@
 
 namespace slipfront {
 
-// Processes as a tree: what one tells all others passes on from each process to some others, and answers come
-// back the same way, so that none has more neighbours than the number of processes has binary digits. Those
-// below a process, with itself, have numbers one after the other (a binomial tree).
+// Ranks as a binomial tree: what rank 0 tells all others passes on from each rank to some others, and answers
+// come back the same way, so that none has more neighbours than the number of ranks has binary digits. Those
+// below a rank, with itself, have numbers one after the other.
 
-/// Of each but 0, which leads.
+/// Of each but 0.
 inline int parent_in_tree(int rank) {
   return rank & (rank - 1);
 }

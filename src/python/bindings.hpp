@@ -10,6 +10,7 @@ namespace slipfront::python {
 void bind_errors(nanobind::module_& module);
 void bind_cases(nanobind::module_& module);
 void bind_observers(nanobind::module_& module);
+void bind_compose(nanobind::module_& module);
 void bind_fronts(nanobind::module_& module);
 void bind_fits(nanobind::module_& module);
 void bind_kammer2012(nanobind::module_& module);

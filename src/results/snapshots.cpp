@@ -374,7 +374,7 @@ void write_snapshots(const std::filesystem::path& path, const mesh::Slabs& mesh,
     const auto file = hdf5::open_written_file(path);
     if (writer.leads()) require_layout(file, data);
     if (writer.number >= writer.count) return;
-    // What another process has written.
+    // What another rank has written.
     data.for_share((writer.number + 1) % writer.count, writer.count,
                    [&](const std::string& name, std::size_t row, const auto& values) {
                      // Whole numbers are read as doubles, which hold them exactly.

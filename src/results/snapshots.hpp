@@ -26,10 +26,10 @@ SnapshotSeries series_of(std::span<const motion::Snapshot> snapshots);
 /// What a Writer ends with where another one could not go on.
 class FailedElsewhere : public std::runtime_error {
  public:
-  FailedElsewhere() : std::runtime_error("another process could not write") {}
+  FailedElsewhere() : std::runtime_error("another rank could not write") {}
 };
 
-/// One of the processes that fill a file together: `count` of them each some slabs of its mesh; of further
+/// One of the ranks that fill a file together: `count` of them each some slabs of its mesh; of further
 /// ones nothing is asked but is_any. What one has filled another one compares.
 struct Writer {
   int number = 0, count = 1;

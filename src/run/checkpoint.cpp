@@ -57,7 +57,7 @@ const std::string& program_identity() {
 }
 
 InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
-                                const Processes* processes) {
+                                const Processes& processes) {
   InitialState initial;
   auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
@@ -80,7 +80,7 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
                    "a plate");
   require_possible(is_possible(initial) && initial.prescribed == is_prestressed(config) &&
                        initial.ramp.has_value() == by_ramp &&
-                       initial.solver <= statics::StaticSolver::petsc &&
+                       initial.solver <= statics::StaticSolver::iterative &&
                        (initial.prescribed || std::isfinite(initial.critical_shear_m)),
                    "an initial state");
   require_possible(!by_ramp || (is_possible(*initial.ramp) && initial.ramp->record.x_m == x_m &&
@@ -93,10 +93,10 @@ void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper)
   stepper.keep([&](const motion::StateByNode& chunk) { archive(chunk); });
 }
 
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads) {
+void read_motion(results::InputArchive* archive, motion::TimeStepper& stepper, const motion::Loads& loads) {
   stepper.restore(loads, [&] {
     motion::StateByNode chunk;
-    archive(chunk);
+    (*archive)(chunk);
     chunk.require_possible();
     return chunk;
   });

@@ -31,17 +31,18 @@ struct CheckpointHead {
 };
 
 /// Reads what was kept of a case's initial state, and makes its mesh.
-/// @param processes  that share the run, of which this one leads; null for this one alone
+/// @param processes  the ranks that share the run
 /// @throws UserError where it is of another plate
 InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
-                                const Processes* processes = nullptr);
+                                const Processes& processes = one_process());
 
 /// The motion of a ramp or an event, see TimeStepper::keep.
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper);
 /// Whatever the number of ranks that kept it, and of those that go on.
-/// @param loads  with which it began
-/// @throws StateError where it is of another case
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads);
+/// @param archive  null on other ranks than 0
+/// @param loads    with which it began
+/// @throws as TimeStepper::restore
+void read_motion(results::InputArchive* archive, motion::TimeStepper& stepper, const motion::Loads& loads);
 
 /// The checkpoints in a folder: the last two are kept, numbered as they come.
 class Checkpoints {

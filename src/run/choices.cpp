@@ -93,7 +93,7 @@ bool has_snapshots(const input::Case& config) {
   return !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
 }
 
-bool leader_has_interface_only(const input::Case& config, int n_processes, bool may_stay_distributed) {
+bool root_has_interface_only(const input::Case& config, int n_processes) {
   const auto is_of_many_squares = [](const mesh::Plate& plate) {
     const double columns = std::round(plate.width_m / plate.element_size_m);
     const double rows = std::round(plate.height_m / plate.element_size_m);
@@ -111,17 +111,8 @@ bool leader_has_interface_only(const input::Case& config, int n_processes, bool 
     const auto n_nodes = static_cast<std::int64_t>((columns + 1) * (rows + 1));
     return solid::takes_frequency_bound(n_nodes, std::span(&grid, 1));
   };
-  const bool is_kept_elsewhere =
-      is_prestressed(config) || (may_stay_distributed && has_distributed_displacements(config, n_processes));
-  return n_processes > 1 && is_kept_elsewhere && input::has_equal_elements(config) &&
-         is_of_many_squares(config.plate) &&
+  return n_processes > 1 && input::can_be_held_in_parts(config) && is_of_many_squares(config.plate) &&
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
-}
-
-bool has_distributed_displacements(const input::Case& config, int n_processes) {
-  return n_processes > 1 && config.loading.solver == statics::StaticSolver::petsc &&
-         config.loading.method == statics::LoadingMethod::direct &&
-         config.loading.top_during_tilt == statics::TopEdge::held;
 }
 
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {

@@ -49,16 +49,10 @@ bool is_plain(const input::Case& config);
 /// Whether the output asks for fields of all nodes.
 bool has_snapshots(const input::Case& config);
 
-/// Whether the process that leads several needs no more of the bodies than their interfaces (see
-/// mesh::make_interface) and the cells at their corners: nothing is strained before the event, or each
-/// process keeps its share of it, and all other cells are equal squares, so many that the step follows from
-/// their side.
-/// @param may_stay_distributed  see make_initial_state
-bool leader_has_interface_only(const input::Case& config, int n_processes, bool may_stay_distributed = true);
-
-/// Whether several processes, which solve the statics together, each keep their share of the displacements
-/// before the event, and the one that leads has no more than its own.
-bool has_distributed_displacements(const input::Case& config, int n_processes);
+/// Whether rank 0 of several needs no more of the bodies than their interfaces (see
+/// mesh::make_interface) and the cells at their corners: nothing is strained before the event, and all other
+/// cells are equal squares, so many that the step follows from their side.
+bool root_has_interface_only(const input::Case& config, int n_processes);
 
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError

@@ -14,9 +14,7 @@
 
 #include "base/error.hpp"
 #include "files/files.hpp"
-#include "motion/subdomain.hpp"
 #include "results/stream.hpp"
-#include "run/case_message.hpp"
 #include "run/run.hpp"
 #include "run/snapshot_mesh.hpp"
 
@@ -24,11 +22,11 @@ namespace slipfront::run {
 
 namespace {
 
-/// What all processes have to know.
+/// What all ranks have to know.
 struct Order {
   std::filesystem::path file, raw;
   std::uint64_t raw_bytes = 0, n_snapshots = 0;
-  std::filesystem::path sign;  ///< a file, and beside it others with the numbers of processes
+  std::filesystem::path sign;  ///< a file, and beside it others with the numbers of ranks
   std::string sign_text;
   mesh::Grid plate;
   std::optional<mesh::Grid> base;
@@ -68,7 +66,7 @@ bool holds_sign(const std::filesystem::path& file, const Order& order) {
   return std::string(std::istreambuf_iterator<char>(stream), {}) == order.sign_text;
 }
 
-/// Whether this process sees the leader's files, and leaves a sign for it.
+/// Whether this rank sees the files of rank 0, and leaves a sign for it.
 bool answers_sign(const Order& order, int rank) {
   std::error_code error;
   if (!holds_sign(order.sign, order) || std::filesystem::file_size(order.raw, error) != order.raw_bytes ||
@@ -96,6 +94,7 @@ void write(const Order& order, const input::Case& config, const std::function<Sn
   results::write_snapshots(order.file, mesh->slabs, series, snapshot_contents(config, *mesh), writer);
 }
 
+/// This rank's share.
 void write_share(const Order& order, const input::Case& config, Processes& processes) {
   const auto is_any = [&](bool here) {
     double value = here ? 1 : 0;
@@ -108,51 +107,18 @@ void write_share(const Order& order, const input::Case& config, Processes& proce
   write(order, config, make_mesh, {processes.rank(), processes.size(), is_any});
 }
 
-/// Begins the work with the others.
-/// @return whether they see the files of this process, and it sees theirs
-bool begin_together(const Order& order, const input::Case& config, Processes& processes) {
-  files::write_text(order.sign, order.sign_text);
-  for (int rank = 1; rank < processes.size(); ++rank) {
-    MessageBuffer buffer;
-    buffer.put(motion::SubdomainCommand::fields);
-    pack_case(config, buffer);
-    order.put(buffer);
-    processes.send(rank, buffer);
-  }
+/// Whether all ranks see the files of rank 0, and it sees theirs.
+bool all_see(const Order& order, Processes& processes) {
+  const int rank = processes.rank();
+  auto answers = processes.all_gather(MessageBuffer().put(processes.is_root() || answers_sign(order, rank)));
   bool all_see = true;
-  for (int rank = 1; rank < processes.size(); ++rank)
-    all_see = processes.receive(rank).take<std::uint8_t>() != 0 && holds_sign(sign_of(order, rank), order) &&
-              all_see;
-  for (int rank = 1; rank < processes.size(); ++rank)
-    processes.send(rank, MessageBuffer().put(static_cast<std::uint8_t>(all_see)));
-  return all_see;
+  for (int other = 1; other < processes.size(); ++other)
+    all_see = answers[static_cast<std::size_t>(other)].take<bool>() && all_see &&
+              (rank > 0 || holds_sign(sign_of(order, other), order));
+  return processes.broadcast(std::move(MessageBuffer().put(all_see))).take<bool>();
 }
 
-/// The leader's share, and what the others tell of theirs.
-void write_together(const Order& order, const input::Case& config, Processes& processes) {
-  std::exception_ptr failure;
-  bool is_own = false;
-  try {
-    write_share(order, config, processes);
-  } catch (const results::FailedElsewhere&) {
-    failure = std::current_exception();
-  } catch (...) {
-    failure = std::current_exception();
-    is_own = true;
-  }
-  std::string reason;
-  for (int rank = 1; rank < processes.size(); ++rank)
-    if (const auto told = processes.receive(rank).take_text(); reason.empty() && !told.empty())
-      reason = fmt::format("process {}: {}", rank, told);
-  if (!failure) return;
-  if (is_own || reason.empty()) std::rethrow_exception(failure);
-  throw WriteError("{}", reason);
-}
-
-}  // namespace
-
-void write_fields(const results::ResultFolder& folder, const input::Case& config, const InitialState& bodies,
-                  Processes* processes, const std::function<void(const std::string&)>& note) {
+Order order_of(const results::ResultFolder& folder, const InitialState& bodies) {
   Order order;
   order.file = std::filesystem::absolute(folder.unfinished() / "fields.vtkhdf");
   order.raw = std::filesystem::absolute(results::ResultStream::snapshot_file(folder.state()));
@@ -162,34 +128,47 @@ void write_fields(const results::ResultFolder& folder, const input::Case& config
   if (bodies.base) order.base = bodies.base->grid;
   order.n_snapshots =
       results::read_snapshots(order.raw, static_cast<std::size_t>(bodies.n_nodes)).time_s.size();
-  if (order.n_snapshots == 0) return;
   order.raw_bytes = std::filesystem::file_size(order.raw);
-  const bool is_in_rows = input::has_equal_elements(config);
-  if (is_in_rows && processes != nullptr) {
-    if (begin_together(order, config, *processes)) return write_together(order, config, *processes);
-    note(fmt::format("{} is written by process 0 alone: others do not see {}, or cannot write there",
-                     order.file.filename().string(), folder.dir().string()));
-  }
-  const auto make_mesh = [&] {
-    return is_in_rows ? snapshot_mesh_in_rows(config, order.plate, order.base)
-                      : whole_snapshot_mesh(check(config, processes));
-  };
-  write(order, config, make_mesh, {});
+  return order;
 }
 
-void carry_out_fields(Processes& processes, MessageBuffer& given) {
-  const auto config = unpack_case(given);
-  const auto order = Order::take(given);
-  processes.send(0, MessageBuffer().put(static_cast<std::uint8_t>(answers_sign(order, processes.rank()))));
-  if (processes.receive(0).take<std::uint8_t>() == 0) return;
-  std::string reason;
-  try {
-    write_share(order, config, processes);
-  } catch (const results::FailedElsewhere&) {
-  } catch (const std::exception& error) {
-    reason = reason_of(error);
-  }
-  processes.send(0, MessageBuffer().put(reason));
+}  // namespace
+
+void write_fields(const results::ResultFolder* folder, const input::Case& config, const InitialState& bodies,
+                  Processes& processes, const std::function<void(const std::string&)>& note) {
+  const bool is_in_rows = input::has_equal_elements(config);
+  const auto write_alone = [&](const Order& order) {
+    if (order.n_snapshots == 0) return;
+    const auto make_mesh = [&] {
+      return is_in_rows ? snapshot_mesh_in_rows(config, order.plate, order.base)
+                        : whole_snapshot_mesh(check(config, processes));
+    };
+    write(order, config, make_mesh, {});
+  };
+  if (processes.size() == 1) return write_alone(order_of(*folder, bodies));
+  auto told = processes.from_root([&](MessageBuffer& to) {
+    const auto order = order_of(*folder, bodies);
+    files::write_text(order.sign, order.sign_text);
+    order.put(to);
+  });
+  const auto order = Order::take(told);
+  if (is_in_rows && order.n_snapshots > 0 && all_see(order, processes)) try {
+      return processes.together([&] {
+        try {
+          write_share(order, config, processes);
+        } catch (const results::FailedElsewhere&) {
+          // The other rank tells why.
+        }
+      });
+    } catch (const ProcessError& error) {
+      throw WriteError("{}", error.what());
+    }
+  processes.from_root([&](MessageBuffer&) {
+    if (is_in_rows && order.n_snapshots > 0)
+      note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",
+                       order.file.filename().string(), folder->dir().string()));
+    write_alone(order);
+  });
 }
 
 }  // namespace slipfront::run

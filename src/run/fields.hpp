@@ -13,15 +13,11 @@
 namespace slipfront::run {
 
 /// Makes fields.vtkhdf of a run's snapshots, which its stream has written. Where the mesh can be made in rows
-/// and all processes see the folder, each writes some of them.
-/// @param bodies     of the run; of their meshes the grids are looked at
-/// @param processes  of which this one leads; null for this one alone
-/// @param note       receives the reason why the others do not help
-/// @throws WriteError
-void write_fields(const results::ResultFolder& folder, const input::Case& config, const InitialState& bodies,
-                  Processes* processes, const std::function<void(const std::string&)>& note);
-
-/// What another process does for it, after the command.
-void carry_out_fields(Processes& processes, MessageBuffer& given);
+/// and all ranks see the folder, each writes some of them. Collective.
+/// @param folder, bodies, note  on rank 0: of the run; of its meshes the grids are looked at; receives the
+///                              reason why the others do not help
+/// @throws WriteError; FailedElsewhere on the ranks that have not failed
+void write_fields(const results::ResultFolder* folder, const input::Case& config, const InitialState& bodies,
+                  Processes& processes, const std::function<void(const std::string&)>& note);
 
 }  // namespace slipfront::run

@@ -235,17 +235,12 @@ Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_pr
   return timed;
 }
 
-/// A run of P processes on C processors takes the time of
-/// - the steps of a part's own columns and halo, at the measured rate, times P/C where that is more than 1;
-/// - exchanging halos, as if no computing hid it;
-/// - telling all processes, by a tree, where the steps of a look end, and hearing from all;
-/// - what passes through the leader: samples, snapshots and initial motion;
-/// - the statics, of the leader alone, or by PETSc of all.
-Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Timed& timed,
-                       const Sharing& sharing, const Info& info) {
-  /// Of a node: u and v, as they are sent. Packed, passed on and joined by the leader, of each byte.
+/// Of the steps of own and ghost columns, at the measured rate, of what passes through rank 0: samples,
+/// snapshots and initial motion, and of its statics.
+Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Timed& timed, int n_processes,
+                       const Info& info) {
+  /// Of a node: u and v, as they are sent. Packed, passed on and joined by rank 0, of each byte.
   constexpr double sent_bytes_per_node = 32, s_per_byte = 1 / 0.8e9;
-  const int n_processes = sharing.n_processes;
   const GlobalBodies whole(config, meshes.plate, meshes.base);
   std::vector<motion::BodySteps> body_steps;
   for (const auto& body : timed.stepper->bodies()) body_steps.push_back(body.steps());
@@ -253,44 +248,33 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   shared.partition = whole.divided(n_processes, body_steps);
 
   const auto& partition = shared.partition;
-  const int middle = n_processes / 2;  // with a neighbour on each side, where any part has
+  const int middle = n_processes / 2;  // with a neighbour on each side, where any subdomain has
   const double own_columns = partition.own(middle).end - partition.own(middle).begin;
   const double halo_columns = partition.halo_below(middle) + partition.halo_above(middle);
-  const auto steps = static_cast<double>(info.n_steps), n_nodes = static_cast<double>(info.n_nodes);
-  const double n_columns = partition.n_columns();
-  const double processes_each = std::max(1.0, static_cast<double>(n_processes) / sharing.n_processors);
-  const double column_s = info.node_updates / n_columns / info.node_updates_per_s * processes_each;
+  const auto n_nodes = static_cast<double>(info.n_nodes);
+  const double column_s = info.node_updates / partition.n_columns() / info.node_updates_per_s;
+  shared.bytes_per_step =
+      halo_columns * n_nodes / partition.n_columns() * sent_bytes_per_node / partition.steps_per_exchange;
+  const double passed_bytes =
+      0.5 * info.needs.history_bytes +
+      (info.needs.snapshots + (n_processes > 1 ? 1 : 0)) * sent_bytes_per_node * n_nodes;
   const double own_s = own_columns * column_s;
-  double event_s = own_s + halo_columns * column_s;
-  const double halo_bytes = halo_columns * n_nodes / n_columns * sent_bytes_per_node;
-  shared.bytes_per_step = halo_bytes / partition.steps_per_exchange;
-  if (halo_columns > 0)
-    event_s += steps / partition.steps_per_exchange *
-               (sharing.network.latency_s + halo_bytes / sharing.network.bandwidth_bytes_per_s);
-  const bool is_shared = n_processes > 1;
-  if (is_shared)
-    event_s +=
-        looks_of(config, info.needs) * 2 * std::ceil(std::log2(n_processes)) * sharing.network.latency_s;
-  const double passed_bytes = 0.5 * info.needs.history_bytes +
-                              (info.needs.snapshots + (is_shared ? 1 : 0)) * sent_bytes_per_node * n_nodes;
-  event_s += passed_bytes * (s_per_byte + (is_shared ? 1 / sharing.network.bandwidth_bytes_per_s : 0));
+  const double event_s = own_s + halo_columns * column_s + passed_bytes * s_per_byte;
   shared.efficiency = own_s / event_s;
-  const bool by_all = info.solver == statics::StaticSolver::petsc;
-  shared.expected_s = event_s + expected_rest_s(info) +
-                      expected_statics_s(info) / (by_all ? std::min(n_processes, sharing.n_processors) : 1);
+  shared.expected_s = event_s + expected_rest_s(info) + expected_statics_s(info);
 
   const auto size = size_of(meshes, info);
-  shared.leader_memory_bytes = needs(config, size, {n_processes, 1, true}).memory_bytes();
+  shared.root_memory_bytes = needs(config, size, {n_processes, 1, true}).memory_bytes();
   shared.memory_bytes = needs(config, size, {n_processes, 1, false}).memory_bytes();
   return shared;
 }
 
 }  // namespace
 
-Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
+Info info(const input::Case& config, const std::optional<int>& n_processes) {
   Info info;
   info.speeds = wave_speeds(config.material);
-  const bool is_by_interface = sharing && leader_has_interface_only(config, sharing->n_processes);
+  const bool is_by_interface = n_processes && root_has_interface_only(config, *n_processes);
   const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
   add_sizes(config, meshes, info);
   if (const auto loaded = loaded_state(config, meshes)) {
@@ -305,8 +289,8 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   auto sliding = std::async(std::launch::async | std::launch::deferred,
                             [&] { add_well_posedness(config, meshes.plate, info); });
   IsolatedSubdomain part;
-  const auto timed = is_by_interface ? part_to_time(config, meshes, sharing->n_processes, part)
-                                     : whole_to_time(config, meshes);
+  const auto timed =
+      is_by_interface ? part_to_time(config, meshes, *n_processes, part) : whole_to_time(config, meshes);
   sliding.get();
   add_steps(timed, info);
   const double node_updates_per_step = timed.stepper->node_updates_per_step();
@@ -323,7 +307,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   info.expected_s =
       info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
   info.notes = notes_of_case(config, info.rupture, info.step_s);
-  if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
+  if (n_processes) info.shared = shared_by(config, meshes, timed, *n_processes, info);
   return info;
 }
 

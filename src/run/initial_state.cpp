@@ -16,7 +16,6 @@
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
-#include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -74,7 +73,7 @@ void require_edges_to_tilt(const input::Case& config) {
                     Key("loading.method"));
 }
 
-void require_possible_by_plain_scheme(const input::Case& config, const Processes* processes) {
+void require_possible_by_plain_scheme(const input::Case& config, const Processes& processes) {
   if (!is_plain(config)) return;
   const Key stepper("time.stepper");
   if (config.time.precision == motion::Precision::single_precision)
@@ -83,9 +82,9 @@ void require_possible_by_plain_scheme(const input::Case& config, const Processes
   if (config.loading.method == statics::LoadingMethod::ramp)
     throw UserError("{} = plain computes no ramp; choose {} = direct, or fast", stepper,
                     Key("loading.method"));
-  if (processes != nullptr && processes->size() > 1)
-    throw UserError("{} = plain runs in one process, not {}; start one, or choose fast", stepper,
-                    processes->size());
+  if (processes.size() > 1)
+    throw UserError("{} = plain runs on one rank, not {}; start one, or choose fast", stepper,
+                    processes.size());
 }
 
 void require_free_sides_for_single(const input::Case& config) {
@@ -182,16 +181,13 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
 
 }  // namespace
 
-Meshes check(const input::Case& config, const Processes* processes, bool may_stay_distributed) {
-  require_numbers_of_petsc(config);
+Meshes check(const input::Case& config, const Processes& processes) {
   require_possible_by_plain_scheme(config, processes);
-  require_memory_fits(config, processes, may_stay_distributed);
-  const int n_processes = processes != nullptr ? processes->size() : 1;
-  return checked_meshes(config, leader_has_interface_only(config, n_processes, may_stay_distributed));
+  require_memory_fits(config, processes);
+  return checked_meshes(config, root_has_interface_only(config, processes.size()));
 }
 
 Meshes check_interfaces(const input::Case& config) {
-  require_numbers_of_petsc(config);
   return checked_meshes(config, true);
 }
 
@@ -226,10 +222,10 @@ std::unique_ptr<motion::PlainStepper> new_plain_stepper(const input::Case& confi
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution, const RampBegins& ramp_begins,
-                                Processes* processes, bool may_stay_distributed) {
+                                const Processes& processes) {
   const auto start = Clock::now();
   InitialState initial;
-  auto meshes = check(config, processes, may_stay_distributed);
+  auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   initial.n_nodes = n_nodes_of(initial.mesh) + (initial.base ? n_nodes_of(*initial.base) : 0);
@@ -249,19 +245,9 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
-  const bool is_shared = config.loading.solver == statics::StaticSolver::petsc;
-  const SharedStatics helpers(is_shared ? processes : nullptr);
-  if (may_stay_distributed && processes != nullptr &&
-      has_distributed_displacements(config, processes->size()))
-    initial.kept = std::make_shared<statics::DistributedFields>();
-  statics::SharedBy shared{is_shared ? processes : nullptr, initial.kept.get()};
-  if (initial.mesh.is_interface()) {
-    shared.plates.push_back(config.plate);
-    if (base) shared.plates.push_back(input::base_plate(config));
-  }
   const statics::Statics statics(
       {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
-      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); }, shared);
+      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); });
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();
@@ -296,7 +282,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
 }
 
 std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes) {
-  if (!has_forces(config) || meshes.plate.is_interface()) return {};
+  if (!has_forces(config)) return {};
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (meshes.base) base.emplace(statics::ElasticBody{*meshes.base, base_material});

@@ -37,10 +37,8 @@ struct InitialState {
   double wall_s = 0;
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
   std::optional<FoundLoads> loads;   ///< where the case gives forces
-  /// This process's share of the displacements where processes keep them; else null.
-  std::shared_ptr<statics::DistributedFields> kept;
 
-  /// All but the meshes and what processes keep.
+  /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, critical_shear_m,
@@ -56,12 +54,10 @@ struct Meshes {
 };
 
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer. The
-/// meshes are those of the interfaces alone where leader_has_interface_only says so.
-/// @param processes  that share the run, of which this one leads; null for this one alone
-/// @param may_stay_distributed   see make_initial_state
+/// meshes are those of the interfaces alone where root_has_interface_only says so.
+/// @param processes  the ranks that share the run
 /// @throws UserError
-Meshes check(const input::Case& config, const Processes* processes = nullptr,
-             bool may_stay_distributed = true);
+Meshes check(const input::Case& config, const Processes& processes = one_process());
 
 /// The same of the interfaces alone, whatever the memory.
 Meshes check_interfaces(const input::Case& config);
@@ -73,20 +69,18 @@ std::int64_t n_cells_of(const mesh::Mesh& mesh);
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 
-/// @param processes  that share statics by PETSc, all in `serve`; null for this one alone
-/// @param may_stay_distributed   whether these may keep the displacements that they find, for an event that
-/// they share
+/// @param processes  as above
 /// @throws UserError, BlowUp, Interrupted as its parts do.
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
-                                Processes* processes = nullptr, bool may_stay_distributed = false);
+                                const Processes& processes = one_process());
 
 struct LoadedState {
   FoundLoads loads;
   statics::Equilibrium common;  ///< see InitialState
 };
 /// What the forces of a case come to, by its statics; under loading.method = ramp as if it was direct. None
-/// where it gives none, or where the meshes are those of the interfaces alone.
+/// where it gives none.
 std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes);
 
 /// A text that is the same for two cases if and only if they share their initial state.

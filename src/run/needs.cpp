@@ -16,7 +16,6 @@
 #include "run/choices.hpp"
 #include "run/snapshot_plan.hpp"
 #include "solid/operator.hpp"
-#include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/statics.hpp"
 
@@ -28,10 +27,8 @@ constexpr double number = sizeof(double);
 
 // Bytes at the peak, measured over runs of 5e3 to 8e6 nodes; those of whole runs were within 20 %.
 
-/// The program and its libraries; those of MPI and PETSc take as much again.
-double program_bytes() {
-  return statics::petsc_version().empty() ? 18e6 : 40e6;
-}
+/// The program and its libraries.
+constexpr double program_bytes = 18e6;
 /// Of a node of bodies whose motion is made: mesh, state before the event, mass and motion. In small meshes
 /// four fields more, with which the largest frequency is found.
 constexpr double in_motion = 135, in_motion_of_few = 180;
@@ -40,7 +37,7 @@ constexpr double in_plain_motion = 1000, in_plain_checkpoint = 210;
 constexpr double state_before = 32;  ///< of these u before and its change with the shear
 constexpr double in_ramp = 128;      ///< of a node under a ramp, besides: four states
 /// Of an unknown: what each solver takes, the equilibria included.
-constexpr double by_multigrid = 112, by_petsc = 1370;
+constexpr double by_multigrid = 112;
 /// Of an unknown: its place in the factor by nested dissection, times log2 of their number, and indices.
 constexpr double of_factor = 54, of_indices = 45;
 /// Of a pair of displacements of the interface: the dense end of the factor, fronts, equations of contact.
@@ -48,10 +45,9 @@ constexpr double of_dense_pair = 56;
 /// Of an interface node: its state; of what is recorded of it five changes of contact, each with its time and
 /// place, and two tractions at all nodes around it as far as l*.
 constexpr double of_interface = 500, changes = 5, of_change = 32, of_node_around = 16;
-/// What the process that leads several has beside its part, of each node of the bodies: the mesh; and of each
-/// unknown beside PETSc's equations: mesh and numbers, equilibria.
-constexpr double mesh_of_leader = 32, unknown_of_leader = 22, equilibria_of_leader = 48;
-/// Of a cell of a relief, for the leader that has no more of the bodies than these and the interface.
+/// What rank 0 of several has beside its part, of each node of the bodies: the mesh.
+constexpr double mesh_of_root = 32;
+/// Of a cell of a relief, for a rank 0 that has no more of the bodies than these and the interface.
 constexpr double in_relief = 1600;
 
 // Bytes on disk of a node. Raw rows and fields lie there until the results are made of them.
@@ -62,8 +58,8 @@ constexpr double checkpoints = 3;            ///< two, and one that is written
 constexpr double in_text = 20;               ///< of a number
 
 // Seconds, of a processor of 2023 with two threads, measured over 2e4 to 5e7 unknowns.
-constexpr double s_of_large_fronts = 1.6e-9;               ///< times n^1.5
-constexpr double s_by_factor = 2.8e-6, s_by_petsc = 3e-5;  ///< times n
+constexpr double s_of_large_fronts = 1.6e-9;  ///< times n^1.5
+constexpr double s_by_factor = 2.8e-6;        ///< times n
 constexpr double s_by_multigrid = 1.1e-6,
                  s_by_multigrid_of_many = 2e-6;  ///< times n, in caches or beyond them
 constexpr double many_for_caches = 3e6;
@@ -117,12 +113,12 @@ double record_bytes(const input::Case& config, double n_interface) {
   return n_interface * changes * (of_change + of_node_around * (2 * halo + 1));
 }
 
-/// What a process knows of the bodies that others move, and how many nodes those here move.
+/// What the ranks here know of the bodies that others move, and how many nodes those here move.
 struct Shares {
-  double of_all = 1;                         ///< of the processes
-  double n_moving = 0;                       ///< nodes, those of halos counted by each
-  bool by_interface = false, keeps = false;  ///< see leader_has_interface_only, has_distributed_displacements
-  bool has_leader = false;                   ///< of several
+  double of_all = 1;          ///< of the ranks
+  double n_moving = 0;        ///< nodes, those of halos counted by each
+  bool by_interface = false;  ///< see root_has_interface_only
+  bool has_root = false;      ///< of several
 };
 
 Shares shares_of(const input::Case& config, const Size& size, const Holder& holder) {
@@ -132,9 +128,8 @@ Shares shares_of(const input::Case& config, const Size& size, const Holder& hold
   s.of_all = static_cast<double>(holder.n_here) / holder.n_processes;
   const double halo_columns = 2.0 * (config.time.interface_substeps + 2);
   s.n_moving *= s.of_all + std::min(1.0, halo_columns / size.n_interface) * holder.n_here;
-  s.by_interface = leader_has_interface_only(config, holder.n_processes, holder.may_stay_distributed);
-  s.keeps = holder.may_stay_distributed && has_distributed_displacements(config, holder.n_processes);
-  s.has_leader = holder.leads;
+  s.by_interface = root_has_interface_only(config, holder.n_processes);
+  s.has_root = holder.has_root;
   return s;
 }
 
@@ -144,24 +139,18 @@ double bytes_of_node(double of_all_nodes) {
 
 double motion_bytes_of(const input::Case& config, const Size& size, const Shares& s) {
   double bytes = s.n_moving * (is_plain(config) ? in_plain_motion : bytes_of_node(size.n_nodes));
-  if (s.by_interface && is_prestressed(config)) bytes -= state_before * s.n_moving;  // there is none
-  if (s.has_leader && !s.by_interface)
-    bytes += size.n_nodes * (mesh_of_leader + (s.keeps ? 0 : state_before));
+  if (s.by_interface) bytes -= state_before * s.n_moving;  // there is none
+  if (s.has_root && !s.by_interface) bytes += size.n_nodes * (mesh_of_root + state_before);
   const auto& plate = config.plate;
-  if (s.has_leader && s.by_interface && plate.corner == mesh::Corner::relief)
+  if (s.has_root && s.by_interface && plate.corner == mesh::Corner::relief)
     bytes += 2 * in_relief * plate.relief_length_m * plate.relief_depth_m / std::pow(plate.element_size_m, 2);
   return bytes;
 }
 
-double statics_bytes_of(const input::Case& config, const Size& size, const Shares& s, const Holder& holder) {
-  if (is_prestressed(config)) return 0;
+double statics_bytes_of(const input::Case& config, const Size& size, const Holder& holder) {
+  if (is_prestressed(config) || !holder.has_root) return 0;
   const double n = 2 * size.n_nodes, n_base = 2 * size.n_base_nodes;
   const auto solver = statics::choose_solver(wanted_solver(config), n);
-  if (solver == statics::StaticSolver::petsc) {
-    const double of_leader = s.by_interface ? 0 : unknown_of_leader + (s.keeps ? 0 : equilibria_of_leader);
-    return n * (s.of_all * by_petsc + (s.has_leader ? of_leader : 0));
-  }
-  if (!holder.leads) return 0;
   if (solver != statics::StaticSolver::direct) return statics_bytes(solver, n, size.n_interface);
   double bytes = statics_bytes(solver, n - n_base, size.n_interface);
   if (config.loading.top_during_tilt == statics::TopEdge::free) bytes *= 2;  // with a separate factor
@@ -173,24 +162,25 @@ Budget memory(const input::Case& config, const Size& size, const Holder& holder,
   const auto shares = shares_of(config, size, holder);
   const bool is_direct =
       statics::choose_solver(wanted_solver(config), 2 * size.n_nodes) == statics::StaticSolver::direct;
-  const BudgetItem statics = {"the statics", statics_bytes_of(config, size, shares, holder),
+  const BudgetItem statics = {"the statics", statics_bytes_of(config, size, holder),
                               is_direct
                                   ? Message("{} = iterative or {}", Key("loading.solver"), larger_elements())
                                   : larger_elements()};
   const bool is_ramp = config.loading.method == statics::LoadingMethod::ramp;
   const double copies = 2;  // of the record, one in the order of time
+  // Each of several ranks observes the whole interface beside its own part.
+  const double of_ranks = shares.of_all + (holder.n_processes > 1 ? holder.n_here : 0);
   const double interface =
-      (shares.of_all + (shares.has_leader ? 1 : 0)) *
-      (of_interface * size.n_interface + copies * record_bytes(config, size.n_interface));
+      of_ranks * (of_interface * size.n_interface + copies * record_bytes(config, size.n_interface));
   Budget event = {
       {fmt::format("the motion of {:.4g} nodes", size.n_nodes),
        motion_bytes_of(config, size, shares) + (is_ramp ? in_ramp * size.n_nodes : 0), larger_elements()},
       {"the interface and the record of its slip", interface, larger_elements()},
-      {"the rows of energies", energy_rows * sizeof(record::Energies),
+      {"the rows of energies", holder.n_here * energy_rows * sizeof(record::Energies),
        Message("a larger {}", Key("output.energy_interval_s"))}};
   if (is_ramp) event.push_back(statics);
   Budget most = statics.bytes > total_bytes(event) ? Budget{statics} : event;
-  most.push_back({"the program", holder.n_here * program_bytes(), larger_elements()});
+  most.push_back({"the program", holder.n_here * program_bytes, larger_elements()});
   return most;
 }
 
@@ -218,30 +208,29 @@ Size estimated_mesh_size(const input::Case& config) {
           config.plate.width_m / config.plate.element_size_m + 1};
 }
 
-/// The processes of this machine, of which one leads.
-Holder this_machine(const Processes* processes, bool may_stay_distributed) {
-  if (processes == nullptr) return {};
-  return {processes->size(), processes->on_this_machine(), true, may_stay_distributed};
+/// The ranks of this machine, rank 0 among them.
+Holder this_machine(const Processes& processes) {
+  return {processes.size(), processes.on_this_machine(), true};
 }
 
-void require_memory_for(const Budget& memory, const Size& size, const Processes* processes) {
+void require_memory_for(const Budget& memory, const Size& size, const Processes& processes) {
   require_memory(memory, fmt::format("the run with {:.4g} nodes", size.n_nodes),
-                 processes != nullptr ? ", or more machines" : "");
+                 processes.size() > 1 ? ", or more machines" : "");
 }
 
 /// Nodes of a body that is held as a whole are numbered by one process.
 void require_numbers(const input::Case& config, int n_processes) {
-  if (!input::can_be_held_in_parts(config) || leader_has_interface_only(config, n_processes)) return;
+  if (!input::can_be_held_in_parts(config) || root_has_interface_only(config, n_processes)) return;
   constexpr double max_nodes = std::numeric_limits<mesh::Node>::max();
   const double h = config.plate.element_size_m;
   const double height_m =
       std::max(config.plate.height_m, input::has_base_body(config) ? config.base.plate.height_m : 0);
   const double n_nodes = (config.plate.width_m / h + 1) * (height_m / h + 1);
   if (n_nodes > max_nodes)
-    throw UserError("{} is {} m; that makes {:.3g} nodes, more than the {:.3g} that one process can number{}",
+    throw UserError("{} is {} m; that makes {:.3g} nodes, more than the {:.3g} that one rank can number{}",
                     Key("plate.element_size_m"), h, n_nodes, max_nodes,
-                    leader_has_interface_only(config, 2) ? "; use more processes, or choose a larger one"
-                                                         : "; choose a larger one")
+                    root_has_interface_only(config, 2) ? "; use more ranks, or choose a larger one"
+                                                       : "; choose a larger one")
         .about("plate.width_m", "plate.height_m");
 }
 
@@ -267,8 +256,6 @@ double motion_bytes(double n_nodes) {
 }
 
 double statics_bytes(statics::StaticSolver solver, double n, double n_interface) {
-  if (solver == statics::StaticSolver::petsc)
-    return n * (by_petsc + unknown_of_leader + equilibria_of_leader);
   if (solver == statics::StaticSolver::iterative) return n * by_multigrid;
   return n * (of_factor * std::log2(std::max(n, 2.0)) + of_indices) +
          of_dense_pair * std::pow(2 * n_interface, 2);
@@ -276,7 +263,6 @@ double statics_bytes(statics::StaticSolver solver, double n, double n_interface)
 
 double statics_s(statics::StaticSolver solver, double n) {
   if (solver == statics::StaticSolver::direct) return s_of_large_fronts * std::pow(n, 1.5) + s_by_factor * n;
-  if (solver == statics::StaticSolver::petsc) return n * s_by_petsc;
   return n * (n < many_for_caches ? s_by_multigrid : s_by_multigrid_of_many);
 }
 
@@ -296,7 +282,7 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   const double energy_rows = rows_of(end_s, output.energy_interval_s, size.step_s) + 1;
 
   n.memory = memory(config, size, holder, energy_rows);
-  n.statics_bytes = statics_bytes_of(config, size, shares_of(config, size, holder), holder);
+  n.statics_bytes = statics_bytes_of(config, size, holder);
 
   n.history_bytes =
       2 * n.history_rows * number *
@@ -324,30 +310,16 @@ Budget Needs::disk() const {
           {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
 }
 
-void require_numbers_of_petsc(const input::Case& config) {
-  if (is_prestressed(config) || config.loading.solver != statics::StaticSolver::petsc) return;
-  const auto unknowns = approximate_unknowns(config);
-  const double n_nodes = 0.5 * (unknowns.of_plate + unknowns.of_base);
-  if (n_nodes > statics::max_petsc_nodes)
-    throw UserError(
-        "{} is {} m; that makes {:.3g} nodes, more than the {:.3g} whose unknowns PETSc can "
-        "number; choose a larger one, or {} = prestress, which needs no statics",
-        Key("plate.element_size_m"), config.plate.element_size_m, n_nodes,
-        static_cast<double>(statics::max_petsc_nodes), Key("loading.method"))
-        .about("loading.solver");
-}
-
-void require_memory_fits(const input::Case& config, const Processes* processes, bool may_stay_distributed) {
-  require_numbers(config, processes != nullptr ? processes->size() : 1);
+void require_memory_fits(const input::Case& config, const Processes& processes) {
+  require_numbers(config, processes.size());
   const auto size = estimated_mesh_size(config);
-  require_memory_for(memory(config, size, this_machine(processes, may_stay_distributed), 0), size, processes);
+  require_memory_for(memory(config, size, this_machine(processes), 0), size, processes);
 }
 
-void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes,
-                 bool may_stay_distributed) {
-  require_numbers(config, processes != nullptr ? processes->size() : 1);
+void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes& processes) {
+  require_numbers(config, processes.size());
   const auto size = estimated_size(config);
-  const Needs n = needs(config, size, this_machine(processes, may_stay_distributed));
+  const Needs n = needs(config, size, this_machine(processes));
   require_memory_for(n.memory, size, processes);
   require_disk(n, folder);
 }

@@ -24,12 +24,11 @@ struct Size {
 /// which is shorter, and of a graded plate, which may be longer.
 Size estimated_size(const input::Case& config);
 
-/// Whose memory it is: of one process, or of some of several that share a run.
+/// Whose memory it is: of one process, or of some of several ranks.
 struct Holder {
   int n_processes = 1;
-  int n_here = 1;                    ///< of these
-  bool leads = true;                 ///< whether the leader is among them
-  bool may_stay_distributed = true;  ///< see make_initial_state
+  int n_here = 1;        ///< of these
+  bool has_root = true;  ///< whether rank 0 is among them
 };
 
 struct Needs {
@@ -56,23 +55,17 @@ double statics_s(statics::StaticSolver solver, double n_unknowns);
 /// Of the motion of so many nodes, while it is made.
 double motion_bytes(double n_nodes);
 
-/// Refuses statics by PETSc of more nodes than it can number the unknowns of.
-/// @throws UserError
-void require_numbers_of_petsc(const input::Case& config);
-
 /// Refuses a case that would not fit into the memory, or has more nodes than can be numbered, before anything
 /// is built; what grows with its steps is left out.
-/// @param processes  that share the run, of which this one leads; null for this one alone
-/// @param may_stay_distributed   see make_initial_state
+/// @param processes  the ranks that share the run
 /// @throws UserError naming what to change.
-void require_memory_fits(const input::Case& config, const Processes* processes = nullptr,
-                         bool may_stay_distributed = true);
+void require_memory_fits(const input::Case& config, const Processes& processes = one_process());
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
 /// @param processes  as above
 /// @throws UserError naming what to change.
 void require_fit(const input::Case& config, const std::filesystem::path& folder,
-                 const Processes* processes = nullptr, bool may_stay_distributed = true);
+                 const Processes& processes = one_process());
 
 }  // namespace slipfront::run

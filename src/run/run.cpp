@@ -2,6 +2,7 @@
 #include "run/run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -23,7 +24,9 @@ namespace {
 
 using interface::is_at_edge;
 
-const statics::Equilibrium& event_state(const input::Case& config, const InitialState& initial) {
+/// With which the event begins. @tparam Initial  InitialState
+template <class Initial>
+auto& event_state(const input::Case& config, Initial& initial) {
   return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 }
 
@@ -99,34 +102,35 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 
 namespace {
 
+/// Of one process.
 std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, const InitialState& initial,
-                                                     const motion::Execution& execution,
-                                                     Processes* processes) {
-  const auto& state = event_state(config, initial);
+                                                     const motion::Execution& execution) {
   const auto start = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
     stepper->set_probes(probes_of(config, initial.mesh, initial.base));
-    stepper->start(state, top_speed_m_per_s(config), loads_of_event(config, initial));
+    stepper->start(event_state(config, initial), top_speed_m_per_s(config), loads_of_event(config, initial));
     return stepper;
   };
-  if (processes != nullptr)
-    return start(new_distributed_stepper(config, initial.mesh, initial.base, *processes, execution,
-                                         initial.kept.get()));
   if (is_plain(config)) return start(new_plain_stepper(config, initial.mesh, initial.base));
   return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
+std::array<solid::Field*, 4> displacements_of(statics::Equilibrium& state) {
+  return {&state.u_m, &state.u_per_shear, &state.below_u_m, &state.below_u_per_shear};
+}
+
 void release_displacements(statics::Equilibrium& state) {
-  state.u_m = {};
-  state.u_per_shear = {};
-  state.below_u_m = {};
-  state.below_u_per_shear = {};
+  for (auto* field : displacements_of(state)) *field = {};
 }
 
 /// What only the stepper needed.
-void release_nodes(mesh::Mesh& mesh) {
-  mesh.x_m = std::vector<double>();
-  mesh.y_m = std::vector<double>();
-  mesh.cells = std::vector<mesh::Cell>();
+void release_nodes(InitialState& initial) {
+  const auto release = [](mesh::Mesh& mesh) {
+    mesh.x_m = std::vector<double>();
+    mesh.y_m = std::vector<double>();
+    mesh.cells = std::vector<mesh::Cell>();
+  };
+  release(initial.mesh);
+  if (initial.base) release(*initial.base);
   return_freed_memory();
 }
 
@@ -137,34 +141,47 @@ motion::Loads loads_of_event(const input::Case& config, const InitialState& init
 }
 
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
-                                                 const motion::Execution& execution, Processes* processes) {
-  const auto* from = &event_state(config, initial);
-  if (from != &initial.common) release_displacements(initial.common);
-  if (from != &initial.spontaneous) release_displacements(initial.spontaneous);
+                                                 const motion::Execution& execution, Processes& processes) {
+  auto& state = event_state(config, initial);
+  if (&state != &initial.common) release_displacements(initial.common);
+  if (&state != &initial.spontaneous) release_displacements(initial.spontaneous);
   if (initial.ramp) {
     release_displacements(initial.ramp->common);
     release_displacements(initial.ramp->spontaneous);
   }
-  auto stepper = started_stepper(config, initial, execution, processes);
-  release_displacements(initial.common);
-  release_displacements(initial.spontaneous);
-  release_nodes(initial.mesh);
-  if (initial.base) release_nodes(*initial.base);
+  std::unique_ptr<motion::TimeStepper> stepper;
+  if (processes.size() == 1) {
+    stepper = started_stepper(config, initial, execution);
+  } else {
+    // The other ranks get the state without its displacements, and their columns of these.
+    std::array<solid::Field, 4> u;
+    for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *displacements_of(state)[k]);
+    const auto loads = from_root(processes, [&] { return loads_of_event(config, initial); });
+    auto distributed = new_distributed_stepper(config, initial, processes, execution);
+    for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *displacements_of(state)[k]);
+    distributed->start(state, top_speed_m_per_s(config), loads);
+    stepper = std::move(distributed);
+  }
+  release_displacements(state);
+  release_nodes(initial);
   return stepper;
 }
 
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
-                                                  const motion::Execution& execution, Processes* processes) {
-  const auto make = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
+                                                  const motion::Execution& execution, Processes& processes) {
+  const auto with_probes = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
     stepper->set_probes(probes_of(config, initial.mesh, initial.base));
-    release_nodes(initial.mesh);
-    if (initial.base) release_nodes(*initial.base);
     return stepper;
   };
-  if (processes != nullptr)
-    return make(new_distributed_stepper(config, initial.mesh, initial.base, *processes, execution));
-  if (is_plain(config)) return make(new_plain_stepper(config, initial.mesh, initial.base));
-  return make(new_stepper(config, initial.mesh, initial.base, execution));
+  std::unique_ptr<motion::TimeStepper> stepper;
+  if (processes.size() > 1)
+    stepper = new_distributed_stepper(config, initial, processes, execution);
+  else if (is_plain(config))
+    stepper = with_probes(new_plain_stepper(config, initial.mesh, initial.base));
+  else
+    stepper = with_probes(new_stepper(config, initial.mesh, initial.base, execution));
+  release_nodes(initial);
+  return stepper;
 }
 
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
@@ -188,7 +205,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution, motion::Observers more) {
-  const auto stepper = started_stepper(config, initial, execution, nullptr);
+  const auto stepper = started_stepper(config, initial, execution);
   return run_from(config, initial, *stepper, monitor, nullptr, std::move(more));
 }
 

@@ -30,7 +30,7 @@ struct WaveSpeeds {
 };
 WaveSpeeds wave_speeds(const solid::Material& material);
 
-/// What several processes have spent on an event, since they began or went on with it.
+/// What several ranks have spent on an event, since they began or went on with it.
 struct SharedCost {
   motion::Partition partition;
   std::vector<motion::SubdomainCost> of_subdomains;
@@ -46,7 +46,7 @@ struct Result {
   motion::Event event;
   std::vector<fronts::Front> fronts;
   std::vector<std::string> warnings;
-  std::optional<SharedCost> shared;  ///< of several processes
+  std::optional<SharedCost> shared;  ///< of several ranks
 
   /// What cannot be made again from the case and the initial state, see measure.
   template <class Archive>
@@ -60,22 +60,22 @@ motion::Loads loads_of_event(const input::Case& config, const InitialState& init
 
 /// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
-/// @param processes  that share it; null where it is one's
+/// @param processes  the ranks that share it
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
                                                  const motion::Execution& execution = {},
-                                                 Processes* processes = nullptr);
+                                                 Processes& processes = one_process());
 
 /// The same plate without its motion, which is to be read from where it was kept.
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
                                                   const motion::Execution& execution = {},
-                                                  Processes* processes = nullptr);
+                                                  Processes& processes = one_process());
 
 /// The event of a case, about to begin with a started stepper; see motion::EventRun.
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
                              motion::EventOutput* output = nullptr, motion::Observers more = {});
 
-/// The case, the steps and an event, without fronts yet.
+/// The case, the steps and an event, without fronts yet. Collective.
 Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
 void measure(Result& result, const InitialState& initial);
@@ -137,14 +137,14 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 
 /// Derived quantities of a case, found without solving anything but the statics of loads given as forces.
 struct Info {
-  /// A division among processes, and what a run by them takes.
+  /// A division among ranks, and what a run by them takes.
   struct Shared {
     motion::Partition partition;
-    double bytes_per_step = 0;  ///< that the process with most neighbours sends in exchanges
-    double expected_s = 0;
-    double efficiency =
-        0;  ///< share of the event's time that goes into columns which the process accounts for
-    double memory_bytes = 0, leader_memory_bytes = 0;  ///< of each other process
+    double bytes_per_step = 0;     ///< that the rank with most neighbours sends in exchanges
+    double expected_s = 0;         ///< as if messages took no time
+    double efficiency = 0;         ///< share of the event's time that goes into own columns
+    double root_memory_bytes = 0;  ///< of rank 0
+    double memory_bytes = 0;       ///< of each other one
   };
 
   WaveSpeeds speeds;                                         ///< of the plate
@@ -172,20 +172,9 @@ struct Info {
   std::vector<std::string> notes;   ///< see notes_of_case
 };
 
-/// What lies between two neighbouring processes, as `slipfront bench --network` measures it; by default those
-/// of one machine: Open MPI 4.1, two cores of an AMD EPYC (Zen 4).
-struct Network {
-  double latency_s = 0.5e-6;
-  double bandwidth_bytes_per_s = 10e9;  ///< each way at once
-};
-
-/// Processes that are to share a run.
-struct Sharing {
-  int n_processes = 2, n_processors = 2;
-  Network network = {};
-};
-/// Of a case that leader_has_interface_only only columns of one process are made.
+/// Of a case that root_has_interface_only only columns of one rank are made.
+/// @param n_processes  ranks that are to share the run, each with a processor
 /// @throws UserError where the plate cannot be divided among so many
-Info info(const input::Case& config, const std::optional<Sharing>& sharing = {});
+Info info(const input::Case& config, const std::optional<int>& n_processes = {});
 
 }  // namespace slipfront::run

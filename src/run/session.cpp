@@ -2,6 +2,8 @@
 #include "run/session.hpp"
 
 #include <algorithm>
+#include <csignal>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,6 +16,7 @@
 #include "input/schema.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
+#include "run/case_message.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
 #include "run/fields.hpp"
@@ -27,18 +30,30 @@ namespace {
 constexpr double min_report_interval_s = 2;
 constexpr double report_share = 0.02;
 
+/// Where rows go that rank 0 writes: the other ranks take part in gathering snapshots.
+struct NoOutput final : motion::EventOutput {
+  void sample(const record::History& /*row*/) override {}
+  void snapshot(motion::TimeStepper& stepper) override { stepper.snapshot(); }
+  void probe(const record::ProbeRecord& /*rows*/) override {}
+};
+
+/// A run, on every rank that shares it. Rank 0 alone has the folder, the hooks and the results.
 class Session {
  public:
-  Session(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+  /// @param folder   null on other ranks
+  /// @param resumed  there is earlier work in the folder
+  Session(results::ResultFolder* folder, const input::Case& config, const SessionOptions& options,
           const SessionHooks& hooks, bool resumed)
       : folder_(folder),
-        dir_(folder.unfinished()),
         config_(config),
         options_(options),
         hooks_(hooks),
+        processes_(*options.processes),
         execution_{.threads = options.threads.value_or(suitable_threads(config))},
-        checkpoints_(folder.state()),
         resumed_(resumed) {
+    if (!is_root()) return;
+    dir_ = folder->unfinished();
+    checkpoints_.emplace(folder->state());
     head_.case_text = resolved_text(config);
     head_.prestress_table = config.prestress.table.text;
     head_.friction_table = config.friction_along_x.table.text;
@@ -46,23 +61,34 @@ class Session {
 
   /// From a checkpoint, or from the beginning.
   Finished run(std::unique_ptr<Checkpoints::Checkpoint> kept);
+  /// The same on another rank. @param in_event  whether rank 0 has a checkpoint of the event
+  void run_beside(bool in_event) {
+    begin_event(nullptr, in_event);
+    finish(event_->run());
+  }
 
  private:
   /// Solved, or taken from the shared ones.
   InitialState initial_state(Checkpoints::Checkpoint* kept);
   void begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp);
-  void begin_event(Checkpoints::Checkpoint* kept);
+  void begin_event(Checkpoints::Checkpoint* kept, bool in_event);
+  void restore_event(Checkpoints::Checkpoint* kept);
   void emplace_event();
+  bool is_root() const { return processes_.is_root(); }
+  /// Work of rank 0, which the others wait for. @throws as Processes::from_root
+  void at_root(const std::function<void()>& work) {
+    processes_.from_root([&](MessageBuffer& /*to*/) { work(); });
+  }
   /// Between linear solutions. @return whether the run goes on
   bool look_at_statics();
   /// Between steps. @return whether the run goes on
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
   void write_progress();
-  /// Of the event: by default each of several processes has threads for its part.
+  /// Of the event: by default each rank has threads for its subdomain.
   motion::Execution event_execution() const {
-    if (options_.threads || options_.processes == nullptr) return execution_;
-    return {.threads = std::max(1, execution_.threads / options_.processes->size())};
+    if (options_.threads) return execution_;
+    return {.threads = std::max(1, execution_.threads / processes_.size())};
   }
   double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
   /// The run's event is over: makes its results.
@@ -70,16 +96,17 @@ class Session {
   void write_results(const Finished& run);
   void fail(const char* status, const std::string& reason) noexcept;
 
-  results::ResultFolder& folder_;
+  results::ResultFolder* folder_;
   std::filesystem::path dir_;
   const input::Case& config_;
   const SessionOptions& options_;
   const SessionHooks& hooks_;
+  Processes& processes_;
   motion::Execution execution_;
-  Checkpoints checkpoints_;
+  std::optional<Checkpoints> checkpoints_;
   CheckpointHead head_;
   Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), reported_ = Clock::now();
-  bool resumed_;        ///< there is earlier work in the folder
+  bool resumed_;
   bool began_ = false;  ///< before that a new run has nothing to keep
   double kept_time_s_ = 0, report_interval_s_ = min_report_interval_s;
 
@@ -89,16 +116,17 @@ class Session {
   std::unique_ptr<motion::TimeStepper> event_stepper_;
   std::optional<motion::EventRun> event_;
   std::optional<results::ResultStream> stream_;
+  NoOutput no_output_;
 };
 
-/// Reads the rest of a checkpoint, to its end. @throws UserError naming its file
+/// Reads from a checkpoint, which is rank 0's. @throws UserError naming its file
 template <class Read>
-void read_rest(Checkpoints::Checkpoint& kept, Read&& read) {
+void read_from(Checkpoints::Checkpoint* kept, Read&& read) {
   try {
-    read(kept.rest);
-    kept.rest.close();
+    read();
   } catch (const StateError& error) {
-    throw UserError("{}: {}; start a new run", kept.rest.path().string(), error.what());
+    if (kept == nullptr) throw;
+    throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
   }
 }
 
@@ -109,21 +137,13 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
       head_.wall_s = kept->head.wall_s;
     }
     write_status(dir_, config_, {"running", "before the event", head_.sessions});
-    if (kept && kept->head.in_event) {
-      begin_event(kept.get());
-    } else {
-      initial_ = initial_state(kept.get());
-      ramp_ = nullptr;
-      stepper_ = nullptr;
-      if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
-      begin_event(nullptr);
-    }
+    begin_event(kept.get(), kept && kept->head.in_event);
     kept.reset();
     return finish(event_->run());
   } catch (const Interrupted& error) {
     fail("interrupted", error.what());
     if (!began_) throw;
-    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(folder_)));
+    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(*folder_)));
   } catch (const BlowUp& error) {
     fail("blew_up", error.what());
     throw;
@@ -131,7 +151,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
     if (began_ || resumed_)
       fail("failed", error.what());
     else
-      folder_.abandon();
+      folder_->abandon();
     throw;
   }
 }
@@ -156,16 +176,17 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
         return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
       },
       execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); },
-      options_.processes, !shared);
+      processes_);
   if (shared) shared->keep(config_, initial);
   return initial;
 }
 
 void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
-    read_rest(*kept, [&](auto& rest) {
-      read_motion(rest, stepper, {});
-      rest(ramp);
+    read_from(kept, [&] {
+      read_motion(&kept->rest, stepper, {});
+      kept->rest(ramp);
+      kept->rest.close();
     });
   }
   began_ = true;
@@ -174,40 +195,61 @@ void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper
   kept_time_s_ = stepper.time_s();
 }
 
-void Session::begin_event(Checkpoints::Checkpoint* kept) {
-  if (kept != nullptr) {
-    read_rest(*kept, [&](auto& rest) {
-      initial_ = read_initial_state(rest, config_, options_.processes);
-      const auto loads = loads_of_event(config_, initial_);
-      event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
-      read_motion(rest, *event_stepper_, loads);
-      results::ResultStream::Extents extents;
-      rest(extents);
-      stream_.emplace(folder_.state(), extents, !config_.probes.x_m.empty());
-      emplace_event();
-      rest(*event_);
-    });
+void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
+  if (in_event) {
+    restore_event(kept);
   } else {
-    files::remove_file(results::ResultStream::history_file(folder_.state()));
-    files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
-    files::remove_file(results::ResultStream::probe_file(folder_.state()));
-    stream_.emplace(folder_.state(), !config_.probes.x_m.empty());
-    event_stepper_ = start_event(config_, initial_, event_execution(), options_.processes);
+    at_root([&] {
+      initial_ = initial_state(kept);
+      ramp_ = nullptr;
+      stepper_ = nullptr;
+      if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
+      for (const auto& file : {results::ResultStream::history_file(folder_->state()),
+                               results::ResultStream::snapshot_file(folder_->state()),
+                               results::ResultStream::probe_file(folder_->state())})
+        files::remove_file(file);
+      stream_.emplace(folder_->state(), !config_.probes.x_m.empty());
+    });
+    event_stepper_ = start_event(config_, initial_, event_execution(), processes_);
     emplace_event();
   }
-  write_static(dir_, config_, initial_);
-  began_ = true;
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
+  at_root([&] { write_static(dir_, config_, initial_); });
+  began_ = true;
   write_progress();
+}
+
+void Session::restore_event(Checkpoints::Checkpoint* kept) {
+  const auto with_file = [&](const std::function<void()>& read) { at_root([&] { read_from(kept, read); }); };
+  with_file([&] { initial_ = read_initial_state(kept->rest, config_, processes_); });
+  const auto loads = from_root(processes_, [&] { return loads_of_event(config_, initial_); });
+  event_stepper_ = make_stepper(config_, initial_, event_execution(), processes_);
+  read_from(kept, [&] { read_motion(kept ? &kept->rest : nullptr, *event_stepper_, loads); });
+  with_file([&] {
+    results::ResultStream::Extents extents;
+    kept->rest(extents);
+    stream_.emplace(folder_->state(), extents, !config_.probes.x_m.empty());
+  });
+  emplace_event();
+  auto of_event = processes_.from_root([&](MessageBuffer& to) {
+    read_from(kept, [&] {
+      kept->rest(*event_);
+      kept->rest.close();
+    });
+    to.append(packed(*event_));
+  });
+  if (!is_root()) MessageArchive::reader(of_event)(*event_);
+  read_from(kept, [&] { processes_.together([&] { event_->require_restored(); }); });
 }
 
 void Session::emplace_event() {
   event_.emplace(run::begin_event(
       config_, initial_, *event_stepper_,
       [&](std::int64_t step, std::int64_t total) { return look("event", step, total, stepper_->time_s()); },
-      &*stream_, options_.observers ? options_.observers() : motion::Observers{}));
+      is_root() ? static_cast<motion::EventOutput*>(&*stream_) : &no_output_,
+      options_.observers ? options_.observers() : motion::Observers{}));
 }
 
 bool Session::look_at_statics() {
@@ -217,24 +259,34 @@ bool Session::look_at_statics() {
 }
 
 bool Session::look(const char* part, std::int64_t step, std::int64_t total, double time_s) {
-  hooks_.progress(part, step, total);
-  const Request request = hooks_.request();
-  if (request != Request::none || seconds_since(kept_) >= options_.keep_every_wall_s ||
-      time_s - kept_time_s_ >= options_.keep_every_s)
-    keep();
-  if (request == Request::keep)
+  struct Wanted {
+    Request request = Request::none;
+    bool checkpoint = false, report = false;
+  } wanted;
+  if (is_root()) {
+    hooks_.progress(part, step, total);
+    wanted.request = hooks_.request();
+    wanted.checkpoint = wanted.request != Request::none ||
+                        seconds_since(kept_) >= options_.keep_every_wall_s ||
+                        time_s - kept_time_s_ >= options_.keep_every_s;
+    wanted.report = event_ && seconds_since(reported_) >= report_interval_s_;
+  }
+  if (event_) wanted = processes_.broadcast(std::move(MessageBuffer().put(wanted))).take<Wanted>();
+  if (wanted.checkpoint) keep();
+  if (wanted.request == Request::keep && is_root())
     hooks_.note(fmt::format("checkpoint at t = {:.6g} s of the {}", time_s, part));
-  if (event_ && seconds_since(reported_) >= report_interval_s_) write_progress();
-  return request != Request::stop;
+  if (wanted.report) write_progress();
+  return wanted.request != Request::stop;
 }
 
 void Session::keep() {
+  if (!is_root()) return stepper_->keep({});
   auto head = head_;
   head.in_event = event_.has_value();
   if (head.in_event) head.wall_s = wall_s();
   // The streams first: a checkpoint must not count on rows that are not there yet.
   auto extents = stream_ ? stream_->keep() : results::ResultStream::Extents{};
-  checkpoints_.keep(head, [&](results::OutputArchive& archive) {
+  checkpoints_->keep(head, [&](results::OutputArchive& archive) {
     if (head.in_event) archive(initial_);
     write_motion(archive, *stepper_);
     if (head.in_event)
@@ -248,7 +300,10 @@ void Session::keep() {
 
 void Session::write_progress() {
   const auto start = Clock::now();
-  stream_->hand_over();
+  if (!is_root()) {
+    unmeasured(config_, *stepper_, {});
+    return;
+  }
   motion::Event so_far;
   so_far.steps = stepper_->step();
   so_far.time_s = stepper_->time_s();
@@ -256,6 +311,7 @@ void Session::write_progress() {
   so_far.energies = {energies.front(), energies.back()};
   so_far.record = event_->record();
   auto result = unmeasured(config_, *stepper_, std::move(so_far));
+  stream_->hand_over();
   result.stepping_wall_s = wall_s();
   measure(result, initial_);
   write_so_far(dir_, result, energies, initial_, {"running", "", head_.sessions});
@@ -266,14 +322,21 @@ void Session::write_progress() {
 Finished Session::finish(motion::Event event) {
   Finished run{unmeasured(config_, *stepper_, std::move(event)), {}};
   run.result.stepping_wall_s = wall_s();
-  const auto extents = stream_->keep();
-  stream_.reset();
-  results::ResultStream::require_unchanged(folder_.state(), extents);
   event_.reset();
   event_stepper_.reset();
   run.initial = std::move(initial_);
-  measure(run.result, run.initial);
-  write_results(run);
+  at_root([&] {
+    const auto extents = stream_->keep();
+    stream_.reset();
+    results::ResultStream::require_unchanged(folder_->state(), extents);
+    measure(run.result, run.initial);
+    write_results(run);
+  });
+  if (!snapshot_plan(config_, run.result.step_s).times_s.empty())
+    write_fields(folder_, config_, run.initial, processes_, hooks_.note);
+  at_root([&] {
+    if (status_of(run.result).name == "complete") folder_->publish();
+  });
   return run;
 }
 
@@ -285,14 +348,11 @@ void Session::write_results(const Finished& run) {
   write_static(dir_, config_, run.initial);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
-  results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_.state()),
+  results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_->state()),
                          run.initial.common.tractions.x_m, origin_of(config_));
   if (const auto places = input::probe_places(config_); !places.empty())
-    results::write_probes(dir_ / "probes.h5", results::ResultStream::probe_file(folder_.state()), places,
+    results::write_probes(dir_ / "probes.h5", results::ResultStream::probe_file(folder_->state()), places,
                           origin_of(config_));
-  if (!snapshot_plan(config_, run.result.step_s).times_s.empty())
-    write_fields(folder_, config_, run.initial, options_.processes, hooks_.note);
-  if (status.name == "complete") folder_.publish();
 }
 
 /// The first line in which two texts differ, for a message; of `text`.
@@ -315,6 +375,20 @@ void require_unchanged(const std::string& table, const std::string& kept, const 
     throw UserError("{}: was changed since the run was begun; restore it, or start a new run", file);
 }
 
+/// On rank 0, with the others in take_part.
+Finished run_shared(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+                    const SessionHooks& hooks, bool resumed, std::unique_ptr<Checkpoints::Checkpoint> kept) {
+  Session session(&folder, config, options, hooks, resumed);
+  MessageBuffer told;
+  told.put(true).put(kept && kept->head.in_event);
+  pack_case(config, told);
+  options.processes->broadcast(std::move(told));
+  options.processes->set_awaited(true);
+  auto finished = session.run(std::move(kept));
+  options.processes->set_awaited(false);
+  return finished;
+}
+
 }  // namespace
 
 Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
@@ -326,7 +400,7 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
     folder.abandon();
     throw;
   }
-  return Session(folder, config, options, hooks, false).run({});
+  return run_shared(folder, config, options, hooks, false, {});
 }
 
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
@@ -350,7 +424,27 @@ Finished resume(results::ResultFolder& folder, const input::Case* expected, cons
   files::write_text(file, text);  // as it was, however it was written meanwhile
   for (const char* name : {"interface.h5", "fields.vtkhdf", "probes.h5"})
     files::remove_file(folder.unfinished() / name);
-  return Session(folder, config, options, hooks, true).run(std::move(kept));
+  return run_shared(folder, config, options, hooks, true, std::move(kept));
+}
+
+void take_part(Processes& processes) {
+  // What a signal asks for is rank 0's to hear.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
+    std::signal(signal, SIG_IGN);
+  for (;;) try {
+      auto told = processes.broadcast({});
+      if (!told.take<bool>()) return;
+      const bool in_event = told.take<bool>();
+      const auto config = unpack_case(told);
+      SessionOptions options;
+      options.processes = &processes;
+      Session(nullptr, config, options, {}, false).run_beside(in_event);
+    } catch (const FailedElsewhere&) {
+    }
+}
+
+void release(Processes& processes) {
+  processes.broadcast(std::move(MessageBuffer().put(false)));
 }
 
 std::string what_was_kept(const results::ResultFolder& folder) {

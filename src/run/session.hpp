@@ -26,7 +26,7 @@ struct SessionOptions {
   std::optional<std::string> shared_states;                       ///< folder of SharedStates, see there
   /// Makes further observers of the event, where it begins and where it goes on.
   std::function<motion::Observers()> observers;
-  Processes* processes = nullptr;  ///< that share the event with this one; the others are in run::serve
+  Processes* processes = &one_process();  ///< the ranks that share the event
 };
 
 /// All three are called by the thread that steps.
@@ -60,6 +60,10 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 /// @throws UserError where there is none, or it is one of another program or case
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks);
+
+/// On the ranks but 0: their parts of the runs that rank 0 begins or goes on with, until it releases them.
+void take_part(Processes& processes);
+void release(Processes& processes);
 
 /// What to tell of a run that has not come to its end, and how to go on with it.
 std::string what_was_kept(const results::ResultFolder& folder);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/subdomains.hpp"
 
-#include <csignal>
-#include <cstdint>
-#include <exception>
+#include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,62 +12,41 @@
 #include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
 #include "mesh/plate.hpp"
-#include "processes/answers.hpp"
-#include "run/case_message.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
-#include "run/fields.hpp"
 #include "run/initial_state.hpp"
-#include "run/run.hpp"
-#include "statics/petsc_solver.hpp"
 
 namespace slipfront::run {
 
 namespace {
 
-/// What a process needs to make its subdomain.
+/// What a rank needs to make its subdomain.
 struct Plan {
-  motion::Partition partition;
+  motion::Decomposition whole;
   int threads = 1;
   std::vector<motion::BodySteps> steps;  ///< of the bodies
   std::vector<double> whole_x_m;         ///< of the whole interface: friction along x is read at its nodes
+  std::vector<motion::Probe> probes;
 
   void put(MessageBuffer& to) const {
-    to.put(partition.first).put(partition.halo).put(partition.columns_per_step);
-    to.put(partition.steps_per_exchange).put(partition.is_ring);
-    to.put(threads).put(static_cast<std::uint64_t>(steps.size()));
+    whole.put(to);
+    to.put(threads).put(steps.size());
     for (const auto& of_body : steps) to.put(of_body.stable_step_s).put(of_body.multiples);
-    to.put(whole_x_m);
+    to.put(whole_x_m).put(probes);
   }
   static Plan take(MessageBuffer& from) {
     Plan plan;
-    plan.partition.first = from.take_all<int>();
-    plan.partition.halo = from.take<int>();
-    plan.partition.columns_per_step = from.take<int>();
-    plan.partition.steps_per_exchange = from.take<int>();
-    plan.partition.is_ring = from.take<bool>();
+    plan.whole = motion::Decomposition::take(from);
     plan.threads = from.take<int>();
-    for (auto n = from.take<std::uint64_t>(); n > 0; --n) {
+    for (auto n = from.take<std::size_t>(); n > 0; --n) {
       const auto stable_step_s = from.take<double>();
       plan.steps.push_back({stable_step_s, from.take_all<int>()});
     }
     plan.whole_x_m = from.take_all<double>();
+    plan.probes = from.take_all<motion::Probe>();
     return plan;
   }
 };
-
-Plan plan_for(const GlobalBodies& whole, int n_processes) {
-  Plan plan;
-  plan.steps = whole.steps();
-  plan.partition = whole.divided(n_processes, plan.steps);
-  plan.whole_x_m = interface_x_m(whole.plate());
-  return plan;
-}
-
-/// Places along the whole interface of a subdomain's nodes.
-mesh::Subset lower_of(const GlobalBodies& whole, const Plan& plan, int rank) {
-  return motion::interface_nodes_in(whole.plate(), plan.partition.all(rank));
-}
 
 interface::ContactModel contact_of(const input::Case& config, const std::vector<double>& whole_x_m,
                                    const mesh::Subset& interface_nodes) {
@@ -108,27 +86,6 @@ class Columns {
   std::vector<motion::BodySource> sources_;
 };
 
-/// The process's own subdomain, of columns that it makes itself.
-/// @param lower  places of its nodes along the whole interface
-std::unique_ptr<motion::Subdomain> make_subdomain(Processes& processes, const input::Case& config,
-                                                  const Plan& plan, const mesh::Subset& interface_nodes,
-                                                  statics::DistributedFields* kept) {
-  const int rank = processes.rank();
-  const Columns columns(config, plan.partition.all(rank), plan.partition.n_columns(),
-                        plan.partition.own(rank), plan.steps,
-                        [&](std::span<double> values) { processes.reduce_max(values); });
-  return std::make_unique<motion::Subdomain>(
-      processes, plan.partition, columns.sources(), contact_of(config, plan.whole_x_m, interface_nodes),
-      config.time, motion::Execution{.threads = plan.threads}, interface_nodes, kept);
-}
-
-std::unique_ptr<motion::Subdomain> take_part(Processes& processes, MessageBuffer& given,
-                                             statics::DistributedFields& kept) {
-  const auto config = unpack_case(given);
-  const auto plan = Plan::take(given);
-  return make_subdomain(processes, config, plan, mesh::Subset(given.take_all<mesh::Subset::Range>()), &kept);
-}
-
 }  // namespace
 
 GlobalBodies::GlobalBodies(const input::Case& config, const mesh::Mesh& plate,
@@ -151,8 +108,9 @@ motion::Partition GlobalBodies::divided(int n_processes, std::span<const motion:
 }
 
 void require_divisible(const input::Case& config, const Processes& processes) {
-  const auto meshes = check(config, &processes);
-  plan_for(GlobalBodies(config, meshes.plate, meshes.base), processes.size());
+  const auto meshes = check(config, processes);
+  const GlobalBodies whole(config, meshes.plate, meshes.base);
+  whole.divided(processes.size(), whole.steps());
 }
 
 IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh::Mesh& interface,
@@ -165,118 +123,62 @@ IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh:
   return {std::move(some.plate), std::move(some.base), std::move(stepper)};
 }
 
-std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(
-    const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base,
-    Processes& processes, const motion::Execution& execution, statics::DistributedFields* kept) {
-  const GlobalBodies whole(config, plate, base);
-  auto plan = plan_for(whole, processes.size());
-  std::vector<const mesh::Mesh*> meshes;
-  for (const auto& body : whole.bodies()) meshes.push_back(&body.mesh);
-  plan.threads = execution.threads;
-  std::unique_ptr<motion::DistributedStepper> stepper;
-  or_fail(processes, [&] {
-    for (int rank = 1; rank < processes.size(); ++rank) {
-      MessageBuffer buffer;
-      buffer.put(motion::SubdomainCommand::build);
-      pack_case(config, buffer);
-      plan.put(buffer);
-      buffer.put(lower_of(whole, plan, rank).ranges());
-      processes.send(rank, buffer);
-    }
-    stepper = std::make_unique<motion::DistributedStepper>(
-        processes, plan.partition, make_subdomain(processes, config, plan, lower_of(whole, plan, 0), kept),
-        meshes);
+std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input::Case& config,
+                                                                    InitialState& initial,
+                                                                    Processes& processes,
+                                                                    const motion::Execution& execution) {
+  auto told = processes.from_root([&](MessageBuffer& to) {
+    const GlobalBodies bodies(config, initial.mesh, initial.base);
+    std::vector<const mesh::Mesh*> meshes;
+    for (const auto& body : bodies.bodies()) meshes.push_back(&body.mesh);
+    Plan plan;
+    plan.steps = bodies.steps();
+    plan.whole = motion::decomposition_of(bodies.divided(processes.size(), plan.steps), meshes);
+    plan.threads = execution.threads;
+    plan.whole_x_m = interface_x_m(initial.mesh);
+    plan.probes = probes_of(config, initial.mesh, initial.base);
+    plan.put(to);
+    to.put(initial.mesh.grid).append(packed(initial));
   });
+  const auto plan = Plan::take(told);
+  if (!processes.is_root()) {
+    initial.mesh.grid = told.take<mesh::Grid>();
+    MessageArchive::reader(told)(initial);
+  }
+  const auto rank = processes.rank();
+  const auto& partition = plan.whole.partition;
+  const Columns own(config, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
+                    [&](std::span<double> values) { processes.reduce_max(values); });
+  const auto contact =
+      contact_of(config, plan.whole_x_m, plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
+  auto stepper = std::make_unique<motion::DistributedStepper>(
+      processes, plan.whole, own.sources(), contact, config.time, motion::Execution{.threads = plan.threads});
+  stepper->set_probes(plan.probes);
   return stepper;
 }
 
-void lead(Processes& processes) {
-  std::string other;
-  for (int rank = 1; rank < processes.size(); ++rank) {
-    const auto program = processes.receive(rank).take_text();
-    if (other.empty() && program != program_identity())
-      other = fmt::format("slipfront: process {} is {}, and process 0 {}; start the same program everywhere",
-                          rank, program, program_identity());
-  }
-  const auto is_one_program = static_cast<std::uint8_t>(other.empty());
-  for (int rank = 1; rank < processes.size(); ++rank)
-    processes.send(rank, MessageBuffer().put(is_one_program));
-  if (!other.empty()) throw UserError("{}", other);
-}
-
-namespace {
-
-/// Of a process's links that to another one: whether it measures, or answers.
-MessageBuffer network_command(int with, bool measures) {
-  MessageBuffer buffer;
-  buffer.put(motion::SubdomainCommand::network).put(with).put(static_cast<std::uint8_t>(measures));
-  return buffer;
-}
-
-void carry_out_network(Processes& processes, MessageBuffer& given) {
-  const int with = given.take<int>();
-  if (given.take<std::uint8_t>() == 0) return answer_link(processes, with);
-  processes.send(0, MessageBuffer().put(measure_link(processes, with)));
-}
-
-}  // namespace
-
-std::vector<Link> measure_network(Processes& processes) {
-  const auto measured = [&](int from, int to) {
-    processes.send(to, network_command(from, false));
-    if (from == 0) return measure_link(processes, to);
-    processes.send(from, network_command(to, true));
-    return processes.receive(from).take<Link>();
+motion::Loads from_root(Processes& processes, const std::function<motion::Loads()>& make) {
+  const auto arrays = [](auto& loads) {
+    return std::array{&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m,
+                      &loads.intact};
   };
-  std::vector<Link> links;
-  for (int rank = 1; rank < processes.size(); ++rank) links.push_back(measured(rank - 1, rank));
-  for (int rank = 2; rank < processes.size(); ++rank) links.push_back(measured(0, rank));
-  return links;
+  auto told = processes.from_root([&](MessageBuffer& to) {
+    const auto loads = make();
+    for (const auto* values : arrays(loads)) to.put(*values);
+    to.put(loads.trigger);
+  });
+  motion::Loads loads;
+  for (auto* values : arrays(loads)) *values = told.take_all<double>();
+  loads.trigger = told.take<interface::Trigger>();
+  return loads;
 }
 
-SharedStatics::SharedStatics(Processes* processes) : processes_(processes) {
-  if (processes_ == nullptr) return;
-  for (int rank = 1; rank < processes_->size(); ++rank)
-    processes_->send(rank, MessageBuffer().put(motion::SubdomainCommand::statics));
-}
-
-SharedStatics::~SharedStatics() {
-  if (processes_ != nullptr) statics::release_statics(*processes_);
-}
-
-void serve(Processes& processes) try {
-  // What a signal asks for is the leader's to hear.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
-    std::signal(signal, SIG_IGN);
-  processes.send(0, MessageBuffer().put(program_identity()));
-  if (processes.receive(0).take<std::uint8_t>() == 0) return;
-  statics::DistributedFields kept;
-  for (;;) {
-    auto buffer = processes.receive(0);
-    const auto command = buffer.take<motion::SubdomainCommand>();
-    if (command == motion::SubdomainCommand::end) return;
-    if (command == motion::SubdomainCommand::network) {
-      carry_out_network(processes, buffer);
-      continue;
-    }
-    if (command == motion::SubdomainCommand::fields) {
-      carry_out_fields(processes, buffer);
-      continue;
-    }
-    if (command == motion::SubdomainCommand::statics) {
-      statics::serve_statics(processes, kept);
-      continue;
-    }
-    const auto part = take_part(processes, buffer, kept);
-    motion::serve(processes, *part);
-  }
-} catch (const std::exception& error) {
-  processes.fail(reason_of(error));
-}
-
-void dismiss(Processes& processes) {
-  for (int rank = 1; rank < processes.size(); ++rank)
-    processes.send(rank, MessageBuffer().put(motion::SubdomainCommand::end));
+void require_same_program(Processes& processes) {
+  processes.gather(MessageBuffer().put(program_identity()), [&](int rank, MessageBuffer& buffer) {
+    if (const auto program = buffer.take_text(); program != program_identity())
+      throw UserError("slipfront: rank {} is {}, and rank 0 {}; start the same program everywhere", rank,
+                      program, program_identity());
+  });
 }
 
 }  // namespace slipfront::run

@@ -156,11 +156,11 @@ Json prestress_json(const input::Prestress& prestress) {
           {"stress_xy_Pa", is_uniform ? Json(prestress.t_Pa) : Json()}};
 }
 
-/// Columns are of nodes; what a process has sent counts as its messages and bytes.
+/// Columns are of nodes; what a rank has sent counts as its messages and bytes.
 Json processes_json(const SharedCost& shared) {
   const auto& partition = shared.partition;
   Json own = Json::array(), halo = Json::array(), computing_s = Json::array();
-  Json exchange_s = Json::array(), command_s = Json::array();
+  Json exchange_s = Json::array(), collective_s = Json::array();
   double messages = 0, bytes = 0, max_messages = 0, max_bytes = 0, sum_s = 0, largest_s = 0;
   for (int part = 0; part < partition.n_subdomains(); ++part) {
     const auto columns = partition.own(part);
@@ -169,7 +169,7 @@ Json processes_json(const SharedCost& shared) {
     const auto& cost = shared.of_subdomains[static_cast<std::size_t>(part)];
     computing_s.push_back(cost.computing_s);
     exchange_s.push_back(cost.exchange_s);
-    command_s.push_back(cost.command_s);
+    collective_s.push_back(cost.collective_s);
     messages += static_cast<double>(cost.messages);
     bytes += static_cast<double>(cost.bytes);
     max_messages = std::max(max_messages, static_cast<double>(cost.messages));
@@ -191,7 +191,7 @@ Json processes_json(const SharedCost& shared) {
           {"bytes_per_step_of_busiest", per_step(max_bytes)},
           {"computing_s", computing_s},
           {"waiting_in_exchanges_s", exchange_s},
-          {"waiting_in_commands_s", command_s},
+          {"waiting_in_collectives_s", collective_s},
           {"imbalance_largest_over_mean", mean_s > 0 ? Json(largest_s / mean_s) : Json()}};
 }
 

@@ -2,19 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "solid/operator.hpp"
-#include "statics/distributed_field.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::statics {
 
-/// Displacements of all nodes: of the plate, and of the base where there is one. By PETSc also, or only,
-/// where they are kept by the processes that have found them.
+/// Displacements of all nodes: of the plate, and of the base where there is one.
 struct Displacement {
   solid::Field above, below;
-  std::optional<DistributedField> kept = {};
 };
 
 /// The plate under its loaded edge, held by what it stands on: displacements of the interface, relative to

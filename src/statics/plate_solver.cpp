@@ -10,7 +10,6 @@
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
 #include "statics/load_case.hpp"
-#include "statics/petsc_solver.hpp"
 
 namespace slipfront::statics {
 
@@ -138,8 +137,7 @@ class DirectSolver : public PlateSolver {
 };
 
 void require_base_fits(const mesh::Mesh& plate, const mesh::Mesh& base) {
-  SLIPFRONT_ASSERT(base.is_interface() || !base.far_edge_nodes.empty(),
-                   "a base that nothing holds cannot be in equilibrium");
+  SLIPFRONT_ASSERT(!base.far_edge_nodes.empty(), "a base that nothing holds cannot be in equilibrium");
   SLIPFRONT_ASSERT(base.interface_nodes.size() == plate.interface_nodes.size(),
                    "interfaces of different nodes");
   const double width_m = plate.x_m[plate.interface_nodes.back()] - plate.x_m[plate.interface_nodes.front()];
@@ -163,17 +161,12 @@ std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
   return gap_m;
 }
 
-const std::vector<mesh::Node>& loaded_nodes(const mesh::Mesh& mesh) {
-  return mesh.is_interface() ? mesh.interface_nodes : mesh.far_edge_nodes;
-}
-
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
   if (wanted != StaticSolver::automatic) return wanted;
   return n_unknowns <= max_direct_unknowns ? StaticSolver::direct : StaticSolver::iterative;
 }
 
 StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const std::optional<Shape>& base) {
-  if (wanted == StaticSolver::petsc) return wanted;
   if (plate.is_graded || (base && base->is_graded)) return StaticSolver::direct;
   if (wanted != StaticSolver::automatic) return wanted;
   const double rows = plate.rows + (base ? base->rows : 0);
@@ -185,21 +178,17 @@ StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const st
 
 std::string_view name_of(StaticSolver solver) {
   if (solver == StaticSolver::automatic) return "auto";
-  if (solver == StaticSolver::petsc) return "petsc";
   return solver == StaticSolver::direct ? "direct" : "iterative";
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
-                                               StaticSolver solver, const std::optional<ElasticBody>& base,
-                                               const SharedBy& shared) {
+                                               StaticSolver solver, const std::optional<ElasticBody>& base) {
   if (base) require_base_fits(mesh, base->mesh);
   std::optional<Shape> shape_of_base;
   if (base) shape_of_base = shape_of(base->mesh);
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
-  if (solver == StaticSolver::petsc)
-    return std::make_unique<PetscSolver>(ElasticBody{mesh, material}, base, shared);
   if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);

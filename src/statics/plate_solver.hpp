@@ -2,15 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "mesh/mesh.hpp"
-#include "mesh/plate.hpp"
-#include "processes/processes.hpp"
 #include "solid/operator.hpp"
 #include "statics/elastic_body.hpp"
 #include "statics/settings.hpp"
@@ -46,29 +43,12 @@ struct Support {
 /// How far the interface of the undeformed bodies is open. [interface nodes]
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 
-/// Nodes of the loaded edge or, of a plate of equal elements whose interface alone is held, those of the
-/// interface below them: as many, at the same places along x.
-const std::vector<mesh::Node>& loaded_nodes(const mesh::Mesh& mesh);
+class LoadCase;  // load_case.hpp
 
-class LoadCase;           // load_case.hpp
-class DistributedFields;  // kept_displacements.hpp
-
-/// The processes that solve together, by PETSc.
-struct SharedBy {
-  Processes* processes = nullptr;  ///< all others are in serve_statics; null for this one alone
-  /// Where this one keeps its share of what is found, which is gathered nowhere; null to gather it here.
-  DistributedFields* kept = nullptr;
-  /// Where the meshes are those of the interfaces alone: the bodies of equal elements, of which each process
-  /// makes what it needs; displacements are kept then.
-  std::vector<mesh::Plate> plates = {};
-};
-
-/// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one; for
-/// PETSc their number, see DistributedFields.
+/// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one.
 struct DisplacementOfBodies {
   const solid::Field* above;
   const solid::Field* below = nullptr;
-  int kept = -1;
 };
 
 /// Solves the linear equilibria of one plate on the rigid plane or on a base.
@@ -106,15 +86,11 @@ struct Shape {
   bool is_graded = false;
 };
 
-/// What the shapes of a plate and of a base leave of `wanted`; PETSc takes any. Others solve graded plates
-/// directly. Multigrid
+/// What the shapes of a plate and of a base leave of `wanted`. Graded plates are solved directly. Multigrid
 /// cannot follow a plate far higher than wide, nor make two bodies coarser of which one is far thinner; there
 /// a factorisation is cheap. On a long interface its dense part is not.
 StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate,
                                const std::optional<Shape>& base = std::nullopt);
-
-/// Two unknowns of each have numbers of 32 bits.
-inline constexpr std::int64_t max_petsc_nodes = std::numeric_limits<std::int32_t>::max() / 2;
 
 /// Rows over columns, and of one body over the other's, up to which automatic takes multigrid, and columns up
 /// to which it takes a factorisation.
@@ -124,10 +100,8 @@ inline constexpr double max_iterative_slenderness = 10, max_iterative_height_rat
 std::string_view name_of(StaticSolver solver);
 
 /// By the solver that the bodies' shapes leave of `solver`.
-/// @param shared  by whom, for PETSc
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver,
-                                               const std::optional<ElasticBody>& base = std::nullopt,
-                                               const SharedBy& shared = {});
+                                               const std::optional<ElasticBody>& base = std::nullopt);
 
 }  // namespace slipfront::statics

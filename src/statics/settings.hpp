@@ -23,7 +23,6 @@ enum class StaticSolver {
   automatic,  ///< by a factorisation up to a number of unknowns, iteratively beyond
   direct,     ///< sparse factorisation, the interface condensed
   iterative,  ///< conjugate gradients with a multigrid preconditioner
-  petsc,      ///< conjugate gradients of PETSc, shared by the processes of a run
 };
 
 /// Displacements of the top edge: pushed down along a line, then moved to +x; or the forces of the interface

@@ -253,14 +253,8 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
 }
 
 /// Interface nodes' displacement along x, relative to that of a base. [interface nodes]
-std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u,
-                                   const LoadCase& of_interface, double shear) {
+std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u) {
   std::vector<double> u_x_m;
-  if (u.kept) {
-    for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2)
-      u_x_m.push_back(of_interface.u0(k) + shear * of_interface.u1(k));
-    return u_x_m;
-  }
   for (const auto n : mesh.interface_nodes) u_x_m.push_back(u.above.x[n]);
   for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k)
     u_x_m[k] -= u.below.x[base->interface_nodes[k]];
@@ -329,7 +323,7 @@ bool begin_on_coarse_levels(const mesh::Mesh& mesh, const mesh::Mesh* base, cons
 }
 
 TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
-  const auto& loaded = loaded_nodes(mesh);
+  const auto& loaded = mesh.far_edge_nodes;
   TopDisplacement tilt{std::vector<double>(loaded.size(), 0.0), {}};
   const double x0 = mesh.x_m[loaded.front()], width = mesh.x_m[loaded.back()] - x0;
   for (const auto n : loaded) {
@@ -346,7 +340,7 @@ double height_over_modulus(const ElasticBody& body) {
 }
 
 DisplacementOfBodies displacement_of(const Equilibrium& e) {
-  return {&e.u_m, &e.below_u_m, e.distributed_u_m ? e.distributed_u_m->number : -1};
+  return {&e.u_m, &e.below_u_m};
 }
 
 /// Nodes without a gap stick where they are.
@@ -371,7 +365,7 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
 
 Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>& base,
                  const Loading& loading, std::vector<double> mu_s, std::string mu_s_key,
-                 MayContinue may_continue, const SharedBy& shared)
+                 MayContinue may_continue)
     : mesh_(plate_body.mesh),
       base_mesh_(base ? &base->mesh : nullptr),
       loading_(loading),
@@ -380,14 +374,14 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       may_continue_(std::move(may_continue)) {
   const auto& mesh = mesh_;
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.interface_nodes.size(), "mu_s of another interface");
-  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base, shared);
+  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
   press_down(height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0));
 }
 
 void Statics::press_down(double compliance_m_per_Pa) {
   const auto& mesh = mesh_;
   const bool is_free = loading_.top_during_tilt == TopEdge::free;
-  const auto& loaded = loaded_nodes(mesh);
+  const auto& loaded = mesh.far_edge_nodes;
   const double width_m = mesh.x_m[loaded.back()] - mesh.x_m[loaded.front()];
   const auto force_N_per_m = normal_force_N_per_m(loading_, width_m);
   if (force_N_per_m) {
@@ -435,11 +429,10 @@ void Statics::press_down(double compliance_m_per_Pa) {
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError("the tilt leaves the plate without contact; increase {}", keys_of_tilt(loading_));
   auto u = plate->displacement(pressed_m);
-  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u, *plate, pressed_m);
+  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u);
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
-  tilted_.distributed_u_m = std::move(u.kept);
   tilted_.u_per_shear = solid::Field(tilted_.u_m.size());
   tilted_.below_u_per_shear = solid::Field(tilted_.below_u_m.size());
 
@@ -500,8 +493,6 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
   auto u = sheared_->displacement(shear), per_shear = sheared_->displacement_per_shear();
   e.u_m = std::move(u.above);
   e.below_u_m = std::move(u.below);
-  e.distributed_u_m = std::move(u.kept);
-  e.distributed_u_per_shear = std::move(per_shear.kept);
   e.u_per_shear = std::move(per_shear.above);
   e.below_u_per_shear = std::move(per_shear.below);
   return e;

@@ -12,7 +12,6 @@
 #include "record/record.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
-#include "statics/distributed_field.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/settings.hpp"
 
@@ -34,8 +33,6 @@ struct Equilibrium {
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
   /// The same of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
-  /// Where the processes that have found them keep both, perhaps they alone; not in archives.
-  std::optional<DistributedField> distributed_u_m = {}, distributed_u_per_shear = {};
   double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
   std::vector<Contact> contact;               ///< [interface nodes]
   record::StaticState tractions;              ///< [interface nodes]
@@ -83,13 +80,12 @@ class Statics {
   /// @param mu_s      coefficient at rest of each interface node. [interface nodes]
   /// @param mu_s_key  key of mu_s in the case file, for messages
   /// @param may_continue of all solutions, those of later calls included
-  /// @param shared     by whom, for loading.solver = petsc
   /// @throws UserError where the tilt leaves the plate without contact, or where `loading` asks for an
   /// iterative solution on a base; Interrupted.
   Statics(
       const ElasticBody& plate, const std::optional<ElasticBody>& base, const Loading& loading,
       std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s",
-      MayContinue may_continue = [] { return true; }, const SharedBy& shared = {});
+      MayContinue may_continue = [] { return true; });
   /// On the rigid plane, with one coefficient everywhere.
   Statics(
       const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,

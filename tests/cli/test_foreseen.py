@@ -158,12 +158,12 @@ SIZED = {
 
 
 def test_a_limit_of_the_process_counts(program, coarse):
-    """`ulimit -v`."""
+    """`ulimit -v`, of which the program itself takes some."""
     case = settings(SIZED["direct"])
     printed = refusal(program("run", coarse, "-o", "out", *case, memory_bytes=300_000_000))
     assert "needs about" in printed
     available = re.search(r"(\S+) GB are available", printed)
-    assert 0.1 < float(available[1]) < 0.4
+    assert 0.1 < float(available[1]) < 0.3
 
 
 @pytest.mark.parametrize("name", ["direct", pytest.param("iterative", marks=pytest.mark.slow), "moving"])

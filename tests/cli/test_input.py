@@ -150,8 +150,7 @@ class TestStandardOutput:
 
 @pytest.mark.parametrize("megabytes", [60, 100, 200])
 def test_little_memory(program, write_case, megabytes):
-    """Each ends by its work or with one line. Below some 70 MB, or 150 with MPI and PETSc, no library
-    is loaded."""
+    """Each ends by its work or with one line; with too little no library is loaded."""
     case = write_case('[plate]\ncorner = "none"\n[time]\nend_s = 2e-6\n')
     for command in (["info", case], ["run", case, "-o", f"out{megabytes}", "-q"]):
         result = program(*command, memory_bytes=megabytes * 10**6)

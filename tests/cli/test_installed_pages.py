@@ -91,6 +91,6 @@ def test_completion_of_options(program, complete, command):
 
 
 def test_completion_of_values(complete):
-    assert complete("slipfront", "bench", "--solver", "") == {"auto", "direct", "iterative", "petsc"}
+    assert complete("slipfront", "bench", "--solver", "") == {"auto", "direct", "iterative"}
     assert complete("slipfront", "run", "--set", "friction.mu") >= {"friction.mu_s=", "friction.mu_k="}
     assert complete("slipfront", "run", "--output", "") == set()

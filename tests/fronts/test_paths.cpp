@@ -122,6 +122,8 @@ TEST(Paths, ATipWaitsLongerWhereSlipSpreadsSlowly) {
   EXPECT_TRUE(find(record, options).empty());
   options.arrest_time_by_event = true;
   EXPECT_NEAR(arrest_time_s(record, options), 3 * options.min_length_m / slow, 1e-12);
+  const auto leftwards = make_record(x, bilateral(x, x.back(), slow), {.end_time_s = 10e-3});
+  EXPECT_NEAR(arrest_time_s(leftwards, options), 3 * options.min_length_m / slow, 1e-12);
   const auto fronts = find(record, options);
   ASSERT_EQ(fronts.size(), 1u);
   expect_front(fronts[0], 0, 300, End::contact_end);

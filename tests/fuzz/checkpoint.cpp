@@ -118,15 +118,16 @@ void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
     auto initial = run::read_initial_state(kept.rest, config);
     const auto loads = run::loads_of_event(config, initial);
     const auto stepper = run::make_stepper(config, initial);
-    run::read_motion(kept.rest, *stepper, loads);
+    run::read_motion(&kept.rest, *stepper, loads);
     auto event = run::begin_event(config, initial, *stepper, stop);
     results::ResultStream::Extents extents;
     kept.rest(extents, event);
+    event.require_restored();
     kept.rest.close();
     event.run();
   } else {
     run::make_initial_state(config, stop, {}, [&](motion::Stepper& stepper, motion::RampRun& ramp) {
-      run::read_motion(kept.rest, stepper, {});
+      run::read_motion(&kept.rest, stepper, {});
       kept.rest(ramp);
       kept.rest.close();
     });

@@ -55,11 +55,9 @@ TEST(CaseText, DeepNestingIsRefused) {
 }
 
 TEST(CaseText, CharactersBeyondAsciiStandInQuotesAndComments) {
-  for (const std::string line : {"width\xc3\xa9_m = 0.2",
-                                 "width_m =\xc2\xa0"
-                                 "0.2",
-                                 "\xef\xbb\xb7width_m = 0.2", "[plate\xe2\x80\x89]",
-                                 "title = \"\"\"a\\ \n \xc3\xa9\"\"\"", "title = \"\\\xc3\xa9\""})
+  for (const auto& line : std::initializer_list<std::string>{
+           "width\xc3\xa9_m = 0.2", std::string("width_m =\xc2\xa0") + "0.2", "\xef\xbb\xb7width_m = 0.2",
+           "[plate\xe2\x80\x89]", "title = \"\"\"a\\ \n \xc3\xa9\"\"\"", "title = \"\\\xc3\xa9\""})
     EXPECT_THAT(parse_error("[plate]\n# \xc3\xa9\n" + line),
                 StartsWith("c.toml:3: has a character beyond ASCII outside quotes"))
         << line;
@@ -151,6 +149,9 @@ TEST(Steps, CanBeCounted) {
   EXPECT_THAT(parse_error("[time]\nstep_factor = 1e-12\nend_s = 1"),
               AllOf(StartsWith("c.toml:3: time.end_s = 1 s takes about"), EndsWith("choose an earlier end")));
   EXPECT_THAT(parse_error("[material]\nstiffness_damping_s = 1e6\n"), HasSubstr("choose an earlier end"));
+  EXPECT_THAT(parse_error("[base]\nkind = 'body'\nheight_m = 0.1\nyoungs_modulus_Pa = 2e11\n"
+                          "poissons_ratio = 0.3\ndensity_kg_per_m3 = 7800\nstiffness_damping_s = 1e6\n"),
+              HasSubstr("choose an earlier end"));
 }
 
 }  // namespace

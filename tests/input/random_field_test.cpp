@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace slipfront::input {
 namespace {
@@ -60,6 +61,20 @@ TEST(RandomField, RepeatsWithItsPeriod) {
     EXPECT_NEAR(mean(period_m, [&](const RandomField& f) { return f(0) * f(x_m); }), rho,
                 n_deviations * deviation(1 + rho * rho) + 1.3 * (l_m / period_m) * (l_m / period_m));
   }
+}
+
+TEST(RandomField, OfAPeriodHasTheNearestWavesThatRepeat) {
+  // The mean over a period is that of the waves of less than half a turn in it.
+  constexpr double period_m = 2.5 * l_m;
+  constexpr int n_places = 32;  // more than any wave's turns
+  const double share = std::erf(std::numbers::pi * l_m / (period_m * std::numbers::sqrt2));
+  EXPECT_NEAR(mean(period_m,
+                   [](const RandomField& f) {
+                     double sum = 0;
+                     for (int k = 0; k < n_places; ++k) sum += f(k * period_m / n_places);
+                     return std::pow(sum / n_places, 2);
+                   }),
+              share, n_deviations * deviation(2 * share * share));
 }
 
 TEST(RandomField, IsOfItsSeed) {

@@ -130,6 +130,18 @@ bool is_in_schema(const std::string& key) {
          std::ranges::any_of(friction_laws(), [&](const LawEntries& law) { return among(law.entries); });
 }
 
+/// A plate as thin as the default tilt is none that a case could press down.
+TEST(Relations, AreNotAskedOfTablesAlone) {
+  const std::vector<Override> small = {
+      {"plate.width_m", "4e-4"}, {"plate.height_m", "2e-4"}, {"plate.element_size_m", "1e-5"}};
+  EXPECT_THROW(parse_case("", "c.toml", small), UserError);
+  const auto tables = parse_tables(small);
+  EXPECT_EQ(tables.plate.height_m, 2e-4);
+  EXPECT_EQ(tables.plate.relief_length_m, 1e-5);  // by the width's rule
+  EXPECT_THROW(parse_tables({{"plate.width_m", "4e-4"}, {"plate.element_size_m", "1e-3"}}), UserError);
+  EXPECT_THROW(parse_tables({{"friction.mu_k", "9"}}), UserError);
+}
+
 TEST(Relations, AreRefusedWithThePlaceAndTheKeysAtFault) {
   for (const auto& wrong : wrong_cases) {
     SCOPED_TRACE(wrong.name);

@@ -268,11 +268,6 @@ TEST(Schema, AWeakenedTriggerHasNoAmount) {
                  "--set event.trigger_amount=3: event.trigger_amount applies only with");
 }
 
-TEST(Schema, StaticsByPetscAreRefusedWithoutIt) {
-  const std::string message = parse_error("[loading]\nsolver = \"petsc\"\n");
-  if (message != "(nothing thrown)") expect_message(message, "", "built without PETSc");
-}
-
 TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
   ASSERT_EQ(friction_laws().size(), interface::law_descriptions().size());
   std::set<std::string> names;

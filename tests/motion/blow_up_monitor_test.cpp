@@ -33,8 +33,14 @@ class Monitored : public ::testing::Test {
     return stepper;
   }
 
-  std::string failure(const record::Energies& start, const record::Energies& now, double t_Pa = 0,
+  /// @param now  what it leaves open is put down to damping
+  std::string failure(const record::Energies& start, record::Energies now, double t_Pa = 0,
                       double step_factor = 0.9) {
+    now.damping_work += record::imbalance_J_per_m(now, start);
+    return failure_of_open(start, now, t_Pa, step_factor);
+  }
+  std::string failure_of_open(const record::Energies& start, const record::Energies& now, double t_Pa = 0,
+                              double step_factor = 0.9) {
     Stepper stepper = pressed(t_Pa, step_factor);
     BlowUpMonitor monitor(stepper, c_L_, Precision::double_precision, start);
     return failure(monitor, stepper, now);
@@ -73,6 +79,16 @@ TEST_F(Monitored, TheCouplingMayGiveATenthOfWhatIsSupplied) {
   EXPECT_THAT(failure({}, {.kinetic = 1.009, .trigger_work = 1}), IsEmpty());
   EXPECT_THAT(failure({}, {.kinetic = 1.02, .trigger_work = 1, .coupling_work = 0.015}), IsEmpty());
   EXPECT_THAT(failure({}, {.kinetic = 1.12, .trigger_work = 1, .coupling_work = 0.2}), Not(IsEmpty()));
+}
+
+TEST_F(Monitored, TheBalanceCloses) {
+  const record::Energies start{.strain = 2}, now{.kinetic = 0.5, .strain = 1, .friction_work = -0.5};
+  EXPECT_THAT(failure_of_open(start, now), IsEmpty());
+  for (const double left_open : {0.01, -0.01, std::numeric_limits<double>::infinity()}) {
+    auto open = now;
+    open.friction_work -= left_open;
+    EXPECT_THAT(failure_of_open(start, open), HasSubstr("J/m of energy are left open; start a new run"));
+  }
 }
 
 TEST_F(Monitored, OverloadIsNotBlamedOnTheStep) {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -82,77 +82,116 @@ Outcome run_by_one(const Problem& problem, std::int64_t n_steps) {
   return run(stepper, begin, n_steps);
 }
 
-/// Cuts a process's part out of the whole bodies.
-class OwnPart {
- public:
-  OwnPart(const Problem& problem, const Bodies& bodies, Processes& processes, const Partition& partition,
-          std::span<const BodySteps> steps) {
-    const auto all = partition.all(processes.rank());
-    const auto own = partition.own(processes.rank());
-    const auto whole = bodies.sources();
-    meshes_.reserve(2);
-    parts_.reserve(2);
-    for (std::size_t b = 0; b < whole.size(); ++b) {
-      meshes_.push_back(mesh::make_columns(bodies.plates[b], all));
-      parts_.push_back({all, partition.n_columns(), own, steps[b],
-                        [&](std::span<double> values) { processes.reduce_max(values); }});
-      sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
-    }
-    part_ = std::make_unique<Subdomain>(processes, partition, sources_, problem.contact, problem.time,
-                                        problem.execution, interface_nodes_in(bodies.above, all));
-  }
-  std::unique_ptr<Subdomain> take() { return std::move(part_); }
+std::vector<StateByNode> chunks_of(TimeStepper& stepper) {
+  std::vector<StateByNode> chunks;
+  stepper.keep([&](const StateByNode& chunk) { chunks.push_back(chunk); });
+  return chunks;
+}
 
- private:
-  std::vector<mesh::Mesh> meshes_;
-  std::vector<BodySubdomain> parts_;
-  std::vector<BodySource> sources_;
-  std::unique_ptr<Subdomain> part_;
-};
+/// The same of one rank, in so many chunks.
+std::vector<StateByNode> chunks_of(Stepper& stepper, int n_chunks) {
+  std::vector<StateByNode> chunks;
+  for (int k = 0; k < n_chunks; ++k) chunks.push_back(keep(stepper.state(), stepper.step(), k, n_chunks));
+  return chunks;
+}
 
-/// The bodies on several processes; the state before the event is in them.
+void restore(TimeStepper& stepper, const Loads& loads, const std::vector<StateByNode>& chunks) {
+  auto next = chunks.begin();
+  stepper.restore(loads, [&] {
+    next->require_possible();
+    return *next++;
+  });
+}
+
+/// The bodies on several ranks, in threads; the state before the event is in them.
 class Team {
  public:
-  Team(int n_processes, const Problem& problem)
-      : problem_(problem), bodies_(problem), mail_(n_processes), leader_(mail_, 0) {
+  Team(int n_ranks, const Problem& problem) : problem_(problem), bodies_(problem), mail_(n_ranks) {
     const auto sources = bodies_.sources();
     for (const auto& source : sources) steps_.push_back(body_steps(source, problem.time));
-    partition_ = partition_bodies(sources, steps_, problem.time, n_processes);
-    for (int rank = 1; rank < n_processes; ++rank)
-      others_.emplace_back([this, rank] {
-        test::ThreadProcess process(mail_, rank);
-        OwnPart own(problem_, bodies_, process, partition_, steps_);
-        const auto part = own.take();
-        serve(process, *part);
-      });
     std::vector<const mesh::Mesh*> meshes = {&bodies_.above};
     if (bodies_.below) meshes.push_back(&*bodies_.below);
-    OwnPart own(problem_, bodies_, leader_, partition_, steps_);
-    stepper_ = std::make_unique<DistributedStepper>(leader_, partition_, own.take(), meshes);
-    stepper_->set_probes(locate_probes(problem.probes, sources));
-    const auto begin = begin_of(problem, bodies_);
-    stepper_->start(begin.state, 0, begin.loads);
+    const auto whole = decomposition_of(partition_bodies(sources, steps_, problem.time, n_ranks), meshes);
+    const auto start = begin();
+    for (int rank = 0; rank < n_ranks; ++rank) processes_.emplace_back(mail_, rank);
+    steppers_.resize(processes_.size());
+    on_ranks([&](std::unique_ptr<DistributedStepper>& stepper, int rank) {
+      stepper = make_stepper(whole, rank);
+      stepper->set_probes(locate_probes(problem.probes, sources));
+      auto state = start.state;
+      if (rank > 0) state.u_m = state.u_per_shear = state.below_u_m = state.below_u_per_shear = {};
+      stepper->start(state, 0, start.loads);
+    });
   }
-  ~Team() { stepper_.reset(); }
-  Team(const Team&) = delete;
-  Team& operator=(const Team&) = delete;
-  DistributedStepper& stepper() { return *stepper_; }
+
   Begin begin() const { return begin_of(problem_, bodies_); }
+  /// What each rank finds: all find the same, but rank 0 alone a snapshot.
+  std::vector<Journey> take_steps(const std::vector<Journey>& before, std::int64_t n_steps) {
+    auto journeys = before;
+    on_ranks([&](auto& stepper, int rank) {
+      motion::take_steps(journeys[static_cast<std::size_t>(rank)], *stepper, n_steps);
+    });
+    return journeys;
+  }
+  Journey take_steps(const Journey& before, std::int64_t n_steps) {
+    const auto journeys = take_steps(std::vector<Journey>(steppers_.size(), before), n_steps);
+    for (const auto& other : journeys) {
+      EXPECT_EQ(other.outcome.energies, journeys.front().outcome.energies);
+      EXPECT_EQ(other.outcome.history.t_Pa, journeys.front().outcome.history.t_Pa);
+      EXPECT_EQ(other.outcome.probes.v_x_m_per_s, journeys.front().outcome.probes.v_x_m_per_s);
+      EXPECT_EQ(other.outcome.record.onsets.size(), journeys.front().outcome.record.onsets.size());
+    }
+    return journeys.front();
+  }
+  std::vector<StateByNode> chunks() {
+    std::vector<StateByNode> chunks;
+    on_ranks([&](auto& stepper, int rank) {
+      stepper->keep([&](const StateByNode& chunk) {
+        EXPECT_EQ(rank, 0);
+        chunks.push_back(chunk);
+      });
+    });
+    return chunks;
+  }
+  void restore(const Loads& loads, const std::vector<StateByNode>& chunks) {
+    on_ranks([&](auto& stepper, int /*rank*/) { motion::restore(*stepper, loads, chunks); });
+  }
 
  private:
+  template <class F>
+  void on_ranks(F&& f) {
+    test::on_ranks(static_cast<int>(steppers_.size()),
+                   [&](int rank) { f(steppers_[static_cast<std::size_t>(rank)], rank); });
+  }
+  std::unique_ptr<DistributedStepper> make_stepper(const Decomposition& whole, int rank) {
+    auto& processes = processes_[static_cast<std::size_t>(rank)];
+    const auto& partition = whole.partition;
+    const auto all = partition.all(rank);
+    std::deque<mesh::Mesh> meshes;
+    std::deque<BodySubdomain> parts;
+    std::vector<BodySource> own;
+    const auto sources = bodies_.sources();
+    for (std::size_t b = 0; b < sources.size(); ++b) {
+      meshes.push_back(mesh::make_columns(bodies_.plates[b], all));
+      parts.push_back({all, partition.n_columns(), partition.own(rank), steps_[b],
+                       [&](std::span<double> values) { processes.reduce_max(values); }});
+      own.push_back({meshes.back(), sources[b].material, &parts.back()});
+    }
+    return std::make_unique<DistributedStepper>(processes, whole, own, problem_.contact, problem_.time,
+                                                problem_.execution);
+  }
+
   Problem problem_;
   Bodies bodies_;
   test::Mailboxes mail_;
-  test::ThreadProcess leader_;
+  std::deque<test::ThreadProcess> processes_;
   std::vector<BodySteps> steps_;
-  Partition partition_;
-  std::vector<std::jthread> others_;
-  std::unique_ptr<DistributedStepper> stepper_;
+  std::vector<std::unique_ptr<DistributedStepper>> steppers_;
 };
 
-Outcome run_by(int n_processes, const Problem& problem, std::int64_t n_steps) {
-  Team team(n_processes, problem);
-  return run(team.stepper(), team.begin(), n_steps);
+Outcome run_by(int n_ranks, const Problem& problem, std::int64_t n_steps) {
+  Team team(n_ranks, problem);
+  return team.take_steps(Journey(team.begin()), n_steps).outcome;
 }
 
 /// @param rounding  of the sums over nodes
@@ -200,7 +239,7 @@ void expect_same(const Outcome& one, const Outcome& several, double rounding) {
 
 constexpr std::int64_t run_steps = 150;
 
-void expect_parts_change_nothing(const Problem& problem, std::vector<int> numbers = {2, 3}) {
+void expect_parts_change_nothing(const Problem& problem, const std::vector<int>& numbers = {2, 3}) {
   const auto one = run_by_one(problem, run_steps);
   EXPECT_GT(one.record.onsets.size(), 20U);
   for (const int n : numbers) {
@@ -266,27 +305,6 @@ TEST(Subdomains, AreWrongNoFartherThanTheColumnsOfAStep) {
   }
 }
 
-std::vector<StateByNode> chunks_of(TimeStepper& stepper) {
-  std::vector<StateByNode> chunks;
-  stepper.keep([&](const StateByNode& chunk) { chunks.push_back(chunk); });
-  return chunks;
-}
-
-/// The same of one rank, in so many chunks.
-std::vector<StateByNode> chunks_of(Stepper& stepper, int n_chunks) {
-  std::vector<StateByNode> chunks;
-  for (int k = 0; k < n_chunks; ++k) chunks.push_back(keep(stepper.state(), stepper.step(), k, n_chunks));
-  return chunks;
-}
-
-void restore(TimeStepper& stepper, const Loads& loads, const std::vector<StateByNode>& chunks) {
-  auto next = chunks.begin();
-  stepper.restore(loads, [&] {
-    next->require_possible();
-    return *next++;
-  });
-}
-
 /// A law with a state variable.
 struct WithState : interface::SlipWeakening {
   static constexpr std::array<interface::LawState, 1> states = {{{"theta", "s", 7.5}}};
@@ -313,18 +331,17 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
       expect_same(one, journey.outcome, 1e-13);
     };
     const std::int64_t first = 49, second = 47;
-    take_steps(journey, two.stepper(), first);
-    restore(three.stepper(), begin.loads, chunks_of(two.stepper()));
-    take_steps(journey, three.stepper(), second);
+    journey = two.take_steps(journey, first);
+    three.restore(begin.loads, two.chunks());
+    journey = three.take_steps(journey, second);
     const Bodies bodies(problem);
     Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
-    restore(by_one, begin.loads, chunks_of(three.stepper()));
-    restore(two.stepper(), begin.loads, chunks_of(by_one, 4));
-    auto by_two = journey;
+    restore(by_one, begin.loads, three.chunks());
+    two.restore(begin.loads, chunks_of(by_one, 4));
+    const auto by_two = journey;
     take_steps(journey, by_one, run_steps - first - second);
     compare();
-    journey = by_two;
-    take_steps(journey, two.stepper(), run_steps - first - second);
+    journey = two.take_steps(by_two, run_steps - first - second);
     compare();
   }
 }
@@ -360,10 +377,9 @@ TEST(Subdomains, HaveTheStateVariablesOfTheFrictionLaw) {
   ASSERT_EQ(expected.size(), initial.size());
   for (const int n : {2, 3}) {
     Team team(n, problem);
-    restore(team.stepper(), begin.loads, chunks);
-    Journey journey(begin);
-    take_steps(journey, team.stepper(), 30);
-    restore(after, begin.loads, chunks_of(team.stepper()));
+    team.restore(begin.loads, chunks);
+    team.take_steps(Journey(begin), 30);
+    restore(after, begin.loads, team.chunks());
     EXPECT_EQ(theta_s(after), expected);
   }
 }
@@ -393,7 +409,16 @@ TEST(Subdomains, DoNotGoOnWithAnotherState) {
   EXPECT_THAT(refusal(stepper, loads, chunks_of(other)), bodies_differ);
   const auto weaker = begin_of(narrow, bodies).loads;
   EXPECT_THAT(refusal(stepper, weaker, kept), testing::HasSubstr("has loads of another case"));
-  EXPECT_THAT(refusal(two.stepper(), weaker, kept), testing::HasSubstr("has loads of another case"));
+  const auto refused = [&](const Loads& its_loads, const auto& chunks) -> std::string {
+    try {
+      two.restore(its_loads, chunks);
+    } catch (const StateError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(refused(weaker, kept), testing::HasSubstr("has loads of another case"));
+  EXPECT_THAT(refused(loads, chunks_of(other)), bodies_differ);
 
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   struct Change {
@@ -420,6 +445,7 @@ TEST(Subdomains, DoNotGoOnWithAnotherState) {
     auto chunks = kept;
     change(chunks.front());
     EXPECT_THAT(refusal(stepper, loads, chunks), testing::HasSubstr(expected));
+    EXPECT_THAT(refused(loads, chunks), testing::HasSubstr(expected));
   }
   EXPECT_EQ(refusal(stepper, loads, kept), "");
 }
@@ -479,12 +505,12 @@ TEST(Partition, OfAPlateThatNoneHoldsHasPartsThatCanBeNumbered) {
     return {};
   };
   for (const int n_subdomains : {2, 4})
-    EXPECT_THAT(refusal(plate, n_subdomains), testing::HasSubstr("number; use more processes, at least 5"));
+    EXPECT_THAT(refusal(plate, n_subdomains), testing::HasSubstr("number; use more ranks, at least 5"));
   // No narrower than their halos, parts of 1e9 nodes to a column have too many.
   auto high = plate;
   high.width_m = 0.04;
   high.height_m = 1e6;
-  EXPECT_THAT(refusal(high, 2), testing::HasSubstr("more processes would have too few columns"));
+  EXPECT_THAT(refusal(high, 2), testing::HasSubstr("more ranks would have too few columns"));
 }
 
 TEST(SnapshotPieces, AreAllOfTheNodesOneAfterTheOther) {

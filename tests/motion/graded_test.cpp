@@ -66,6 +66,16 @@ TEST_P(GradedPlate, LargerElementsTakeLargerSteps) {
   }
 }
 
+TEST(GradedSteps, AreNoLargerThanTheCellsAllow) {
+  // Without lateral contraction a free cell of a transition has a larger frequency than a square below it.
+  const auto mesh = mesh::make_plate(graded_plate(Corner::none));
+  const Stepper stepper(mesh, {.poissons_ratio = 0, .stiffness_damping_s = 1e-7}, support::paper_law,
+                        stepping(1, true));
+  const auto grids = mesh::blocks(mesh);
+  EXPECT_DOUBLE_EQ(stepper.step_s(grids[1].node(2, 1)), stepper.lowest_step_s());
+  EXPECT_DOUBLE_EQ(stepper.step_s(grids[2].node(2, 1)), 4 * stepper.lowest_step_s());
+}
+
 TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
   const auto e = statics::Statics(mesh_, {}, graded_loading, mu_s).shear_to(0.9);
   for (const auto algorithm : support::algorithms) {

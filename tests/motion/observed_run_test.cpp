@@ -114,6 +114,7 @@ TEST_F(Loop, KeepsTheStateOfThoseThatHaveOne) {
   state.rewind();
   auto restored = run_of({{"b", {}}, {"a", other}, {"c", {}}});
   restored.archive(state);
+  restored.require_restored();
   EXPECT_THAT(notes_, ElementsAre("b restored 0", "a restored 0", "c restored 0"));
   notes_.clear();
   restored.run();

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "motion/support.hpp"
 
@@ -51,6 +53,16 @@ TEST_F(QuietRule, WavesTooWeakForTheStrengthDoNotCount) {
   EXPECT_EQ(rest_criterion_.since_s(), 0);
   rest_criterion_.see_kinetic_energy(2, 0.5 * mass_kg_ * 1.01e-6);
   EXPECT_EQ(rest_criterion_.since_s(), 2);
+}
+
+TEST_F(QuietRule, SlipFasterThanCreepAndItsBeginningsCount) {
+  const auto since_s = [&](double time_s, bool moves, std::vector<SlipChange> changes) {
+    rest_criterion_.at_update({time_s, moves, std::move(changes), {}});
+    return rest_criterion_.since_s();
+  };
+  EXPECT_EQ(since_s(1, true, {}), 1);
+  EXPECT_EQ(since_s(2, false, {{.begins = true}}), 2);
+  EXPECT_EQ(since_s(3, false, {{.begins = false}}), 2);
 }
 
 TEST_F(QuietRule, CountsFromTheLastChangeOfTheTrigger) {

@@ -57,7 +57,8 @@ std::vector<double> numbers_of(const StepReport& report) {
     all.push_back(static_cast<double>(values.size()));
     all.insert(all.end(), values.begin(), values.end());
   };
-  const auto& [memory, rates, seen, samples, displacements] = report;
+  const auto& [memory, rates, seen, samples, displacements, is_interrupted] = report;
+  all.push_back(is_interrupted);
   all.push_back(memory.time_s);
   add_plain(memory.t_Pa);
   add_plain(memory.p_Pa);
@@ -74,21 +75,27 @@ std::vector<double> numbers_of(const StepReport& report) {
   return all;
 }
 
+StepReport joined(const std::vector<StepReport>& parts) {
+  std::vector<MessageBuffer> messages;
+  for (const auto& part : parts) messages.push_back(packed(part));
+  return StepReport::joined(std::move(messages));
+}
+
 TEST(StepReport, OfPartsAreThoseOfAllNodes) {
   const std::vector<StepReport> parts = {of_nodes(0, 5, 0), of_nodes(5, 1, 0), of_nodes(6, 7, 0)};
   auto all = of_nodes(0, 13, 0);
   for (int k = 0; k < n_reported; ++k) all.rates[static_cast<std::size_t>(k)] = {k != 2, 6.0 * (k % 2), 3};
   all.seen.moves = {1, 0, 0, 0, 0, 1, 1, 0};
-  EXPECT_EQ(numbers_of(StepReport::joined(parts)), numbers_of(all));
+  EXPECT_EQ(numbers_of(joined(parts)), numbers_of(all));
 }
 
-TEST(StepReport, AreTheSameJoinedInAnyGroups) {
-  const std::vector<StepReport> parts = {of_nodes(0, 5, 1), of_nodes(5, 1, 0), of_nodes(6, 7, 2),
-                                         of_nodes(13, 2, 1)};
-  const auto all = StepReport::joined(parts);
-  const std::vector<StepReport> groups = {parts[0], parts[1],
-                                          StepReport::joined(std::span(parts).subspan(2))};
-  EXPECT_EQ(numbers_of(StepReport::joined(groups)), numbers_of(all));
+TEST(StepReport, HasTheProbesOfAllPartsInEachStepAndWhatOneIsToldToEnd) {
+  std::vector<StepReport> parts = {of_nodes(0, 5, 1), of_nodes(5, 1, 0), of_nodes(6, 7, 2),
+                                   of_nodes(13, 2, 1)};
+  EXPECT_FALSE(joined(parts).is_interrupted);
+  parts.front().is_interrupted = true;
+  const auto all = joined(parts);
+  EXPECT_TRUE(all.is_interrupted);
   // Probes of all parts in each step.
   ASSERT_EQ(all.displacements.size(), n_reported * 32U);
   EXPECT_EQ(all.displacements[32 * 3 + 0], 300);

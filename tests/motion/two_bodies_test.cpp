@@ -119,6 +119,35 @@ TEST(TwoBodies, ExchangeTheirMomentum) {
   }
 }
 
+TEST(TwoBodies, LandingLeavesTheirCentreOfMassOnItsWay) {
+  for (const auto algorithm : support::algorithms) {
+    const auto above = free_plate(), below = free_plate(0.02, 0.012);
+    solid::Field u(above.n_nodes()), v(above.n_nodes());
+    std::ranges::fill(u.y, 1e-6);
+    std::ranges::fill(v.y, -1.0);
+    auto state = support::in_flight(above, u, v);
+    state.below_u_m = state.below_u_per_shear = solid::Field(below.n_nodes());
+    Stepper stepper(BodySource{above, pmma}, BodySource{below, gel},
+                    support::with_algorithm(support::gentle_law, algorithm), stepping(1));
+    stepper.start(state, 1);
+    const auto sum_kg_m = [&] {
+      double sum = 0;
+      for (int b = 0; b < 2; ++b) {
+        const auto& body = stepper.bodies()[b];
+        for (std::size_t k = 0; k < body.u_m().size(); ++k)
+          sum += (b == 0 ? 1 : -1) * body.op().mass_kg[k] * body.u_m().y[k];  // upside down
+      }
+      return sum;
+    };
+    const double start_kg_m = sum_kg_m(), momentum = -start_kg_m / 1e-6;
+    Recorder recorder(state, mu_s, 0);
+    while (stepper.time_s() < 5e-6) stepper.advance(recorder);
+    EXPECT_TRUE(support::touches(stepper));
+    const double way_kg_m = momentum * stepper.time_s();
+    EXPECT_NEAR(sum_kg_m(), start_kg_m + way_kg_m, 1e-12 * std::abs(way_kg_m));
+  }
+}
+
 TEST(TwoBodies, EnergyIsBalanced) {
   for (const auto algorithm : support::algorithms)
     for (const int substeps : {1, 5}) {

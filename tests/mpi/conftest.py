@@ -31,8 +31,8 @@ def own(result):
 class Mpirun:
     """Runs the program as n processes in a folder of its own: `mpirun(2, "run", case, "-o", "out")`."""
 
-    def __init__(self, folder, program=None):
-        self.program = program or built("SLIPFRONT_MPI", "build/mpi/slipfront")
+    def __init__(self, folder):
+        self.program = built("SLIPFRONT_MPI", "build/mpi/slipfront")
         self.folder = folder
 
     def __call__(self, *arguments, **options):

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What processes cost: counted in run.json, measured by bench --network, predicted by info --processes."""
+"""What ranks cost: counted in run.json, predicted by info --processes."""
 
 import json
 import re
-import statistics
 
 import pytest
 from common import ROOT, refusal, require_done, run_json, sets
@@ -41,14 +40,14 @@ def test_run_json_tells_what_processes_cost(runs, n):
     halo = cost["halo_columns"][0]
     assert halo > 0
     assert cost["halo_columns"] == [halo] + [2 * halo] * (n - 2) + [halo]
-    for times in ("computing_s", "waiting_in_exchanges_s", "waiting_in_commands_s"):
+    for times in ("computing_s", "waiting_in_exchanges_s", "waiting_in_collectives_s"):
         assert len(cost[times]) == n
         assert all(t > 0 for t in cost[times])
     longest, mean = max(cost["computing_s"]), sum(cost["computing_s"]) / n
     assert cost["imbalance_largest_over_mean"] == pytest.approx(longest / mean)
     # 121 rows of u and v go to each neighbour with every exchange, in two to eight messages.
     exchanges = 2 * (n - 1) * (cost["steps"] // cost["steps_per_exchange"]) / cost["steps"]
-    # The rest: commands of at most 50 steps and their answers, and energies.
+    # The rest: reports of at most 50 steps, up and down the tree, and energies.
     least_rest, most_rest = (2 * (n - 1) / steps for steps in (50, 5))
     assert 2 * exchanges + least_rest <= cost["messages_per_step"] <= 8 * exchanges + most_rest
     least = exchanges * halo * 121 * 4 * 8
@@ -57,37 +56,6 @@ def test_run_json_tells_what_processes_cost(runs, n):
     share = cost["bytes_per_step_of_busiest"] / cost["bytes_per_step"]
     assert share == pytest.approx(0.5, abs=0.1)
     assert 1 / n <= cost["messages_per_step_of_busiest"] / cost["messages_per_step"] < 0.6
-
-
-def test_bench_measures_between_neighbours_and_from_the_leader(mpirun):
-    n = 3
-    result = mpirun(n, "bench", "--network", "--json")
-    assert (result.returncode, result.stderr) == (0, "")
-    printed = json.loads(result.stdout)
-    assert printed["processes"] == n
-    neighbours, of_leader = [(k, k + 1) for k in range(n - 1)], [(0, k) for k in range(2, n)]
-    assert [(link["from"], link["to"]) for link in printed["links"]] == neighbours + of_leader
-    for part in (neighbours, [(0, 1), *of_leader]):
-        in_part = [link for link in printed["links"] if (link["from"], link["to"]) in part]
-        assert printed["latency_s"] >= statistics.median(link["latency_s"] for link in in_part)
-    for link in [printed, *printed["links"]]:
-        assert link["latency_s"] > 0 and link["bandwidth_bytes_per_s"] > 0
-
-
-def test_bench_prints_what_info_takes(mpirun):
-    result = mpirun(2, "bench", "--network")
-    assert (result.returncode, result.stderr) == (0, "")
-    printed = re.search(r"^info (--latency-s \S+ --bandwidth-bytes-per-s \S+)$", result.stdout, re.MULTILINE)
-    require_done(mpirun.alone("info", *CASE, "--processes", 2, *printed[1].split()))
-
-
-@pytest.mark.parametrize("words", ["--network", "--statics 50 --solver petsc"])
-def test_bench_that_cannot_tell_fails(mpirun, words):
-    """Within each process: mpirun reads what they print."""
-    into_full = ["bash", "-c", f"exec {mpirun.program} bench {words} > /dev/full"]
-    result = mpirun(2, programs=[into_full, into_full])
-    assert result.returncode == 1
-    assert "slipfront: standard output cannot be written (No space left on device)" in result.stderr
 
 
 def test_bench_tells_statics_as_json(mpirun):
@@ -99,14 +67,10 @@ def test_bench_tells_statics_as_json(mpirun):
 @pytest.mark.parametrize(
     "command, expected",
     [
-        ("bench --network", "mpirun -n 2 or more"),
-        ("bench --network --statics 50", "--network takes no --statics"),
         ("bench --statics 50 --threads 2", "--statics takes no --threads"),
         ("bench --solver direct", "without --statics takes no --solver"),
         ("info --processes 300", "choose at most"),
         ("info --processes 0", "--processes"),
-        ("info --processes 2 --latency-s 0", "--latency-s"),
-        ("info --processes 2 --bandwidth-bytes-per-s inf", "finite"),
     ],
 )
 def test_bench_and_info_refuse(mpirun, command, expected):
@@ -114,8 +78,8 @@ def test_bench_and_info_refuse(mpirun, command, expected):
     assert expected in refusal(mpirun.alone(name, *(CASE if name == "info" else ()), *options))
 
 
-def predicted(mpirun, n, *options):
-    printed = require_done(mpirun.alone("info", *CASE, "--processes", n, *options)).stdout
+def predicted(mpirun, n):
+    printed = require_done(mpirun.alone("info", *CASE, "--processes", n)).stdout
     return dict(re.findall(r"^  (.+?) {2,}(.+)$", printed, re.MULTILINE))
 
 
@@ -124,5 +88,5 @@ def test_info_predicts_what_a_run_counts(mpirun, runs):
     assert lines["exchange every"] == f"{cost['steps_per_exchange']} steps"
     assert f"and {cost['halo_columns'][0]} beside them" in lines["columns of nodes of each"]
     sent = float(lines["bytes sent per step"].split()[0])
-    # Commands and answers are not in it.
+    # Reports are not in it.
     assert 0.7 * sent <= cost["bytes_per_step_of_busiest"] < 1.5 * sent

@@ -45,10 +45,8 @@ history_interval_s = 1e-5
 snapshot_times_s = [1e-3, 3e-3]
 """
 OFTEN = ("--checkpoint-every-simulated", "2e-4")
-# The statics take seconds, by the leader alone or shared; the event few steps.
-SLOW_STATICS = {
-    solver: sets("plate.element_size_m=5e-4", f"loading.solver={solver}") for solver in ("direct", "petsc")
-}
+# The statics take seconds, the event few steps.
+SLOW_STATICS = sets("plate.element_size_m=5e-4", "loading.solver=direct", "time.end_s=2e-5")
 
 
 @pytest.fixture
@@ -91,11 +89,8 @@ def in_event(mpirun, case):
     return met(mpirun, lambda: any(state.glob("checkpoint-*.bin")), case, *OFTEN)
 
 
-def in_statics(mpirun, case, solver="direct"):
-    short = sets("time.end_s=2e-5")
-    return met(
-        mpirun, (mpirun.folder / "out/unfinished/run.json").exists, case, *SLOW_STATICS[solver], *short
-    )
+def in_statics(mpirun, case):
+    return met(mpirun, (mpirun.folder / "out/unfinished/run.json").exists, case, *SLOW_STATICS)
 
 
 def interrupted_line(result):
@@ -154,6 +149,7 @@ def test_one_process_answers(mpirun):
     [
         (2, ["validate", "case.toml"], "start validate alone"),
         (2, ["sweep", "case.toml"], "start sweep alone"),
+        (2, ["bench", "--statics", "50"], "start bench alone"),
         (2, [*RUN, "--set", "plate.sids=free"], "did you mean plate.sides?"),
         (4, RUN, "choose at most 2"),
     ],
@@ -210,9 +206,9 @@ def test_killed_in_the_event(mpirun, case, undisturbed, rank):
     require_goes_on(mpirun, case, undisturbed)
 
 
-@pytest.mark.parametrize("solver, rank", [("direct", 0), ("petsc", 1)])
-def test_killed_in_the_statics(mpirun, case, rank, solver):
-    process, pids = in_statics(mpirun, case, solver)
+@pytest.mark.parametrize("rank", [0, 1])
+def test_killed_in_the_statics(mpirun, case, rank):
+    process, pids = in_statics(mpirun, case)
     send(pids[rank], signal.SIGKILL)
     require_killed(finished(process), pids)
     require_no_core(mpirun.folder)
@@ -246,9 +242,8 @@ def test_interrupted_leader(mpirun, case, undisturbed):
     require_goes_on(mpirun, case, undisturbed)
 
 
-@pytest.mark.parametrize("solver", SLOW_STATICS)
-def test_interrupted_leader_in_the_statics(mpirun, case, solver):
-    process, pids = in_statics(mpirun, case, solver)
+def test_interrupted_leader_in_the_statics(mpirun, case):
+    process, pids = in_statics(mpirun, case)
     send(pids[0], signal.SIGTERM)
     if line := interrupted_line(finished(process)):
         assert "interrupted" in line
@@ -325,7 +320,7 @@ def fails_in_fields(mpirun, faulty, case, rank, *fault):
 def test_fields_that_one_process_cannot_write(mpirun, faulty, case, undisturbed, rank, at):
     line = one_line(fails_in_fields(mpirun, faulty, case, rank, at), 1)
     assert "fields.vtkhdf: cannot " in line
-    assert ("process 1: " in line) == (rank == 1)
+    assert ("rank 1: " in line) == (rank == 1)
     assert "--restart out" in line
     require_goes_on(mpirun, case, undisturbed)
 
@@ -338,7 +333,7 @@ def test_killed_while_fields_are_written(mpirun, faulty, case, undisturbed, rank
 
 
 OTHERS_DO_NOT_SEE = (
-    "note: fields.vtkhdf is written by process 0 alone: others do not see out, or cannot write there"
+    "note: fields.vtkhdf is written by rank 0 alone: others do not see out, or cannot write there"
 )
 
 
@@ -382,7 +377,7 @@ def test_output_that_nobody_takes(mpirun, case, undisturbed, out):
     [
         # The limit may come before the statics ask how much memory there is, or after.
         (0, 2, "out of memory in the static solution|needs about .* GB of memory, .* are available"),
-        (1, 1, "process 1: not enough memory"),
+        (1, 1, "rank 1: not enough memory"),
     ],
 )
 def test_no_memory(mpirun, case, rank, code, expected):

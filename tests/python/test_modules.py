@@ -65,7 +65,21 @@ def test_the_way_is_one_way():
 
 
 # For use from outside, by docs/installing.md, and what their headers need where they are installed.
-OUTSIDE = ["base", "mesh", "solid/material.hpp", "fronts", "record", "input", "run/run.hpp"]
+OUTSIDE = [
+    "base",
+    "mesh",
+    "solid/material.hpp",
+    "interface/friction",
+    "interface/friction.hpp",
+    "statics/prestress.hpp",
+    "motion/observer.hpp",
+    "motion/observers",
+    "motion/stepper.hpp",
+    "fronts",
+    "record",
+    "input",
+    "run/run.hpp",
+]
 INSTALLED_WITH = {"fmt", "unistd.h", "immintrin.h"}
 
 
@@ -87,6 +101,10 @@ def test_headers_for_programs_outside_need_no_library_but_fmt():
                 libraries[name.split("/")[0]] = header
     assert src / "motion/event.hpp" in seen
     assert set(libraries) <= INSTALLED_WITH, libraries
+    installed = re.search(
+        r"^foreach\(module ([^)]*)\)", (ROOT / "cmake/install.cmake").read_text(), re.MULTILINE
+    )
+    assert {header.relative_to(src).parts[0] for header in seen} <= set(installed[1].split())
 
 
 @pytest.mark.slow

@@ -155,6 +155,17 @@ TEST_F(DamagedFiles, GroupsCarryNoTime) {
   }
 }
 
+TEST_F(DamagedFiles, StatesWithMoreThanIsReadAreRefused) {
+  const auto path = folder_ / "longer.bin";
+  OutputArchive written(path);
+  double number = 1;
+  written(number, number);
+  written.close();
+  InputArchive archive(path);
+  archive(number);
+  EXPECT_THAT(error_of([&] { archive.close(); }), HasSubstr("is damaged or of another version"));
+}
+
 TEST_F(DamagedFiles, FlagsHoldNothingButTrueAndFalse) {
   const auto path = folder_ / "flags.bin";
   const auto read = [&](std::uint8_t byte) {

@@ -20,39 +20,27 @@ TEST(SuitableThreads, AreOneForSmallPlates) {
   EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 1e-4)), std::min(4, processors));
 }
 
-TEST(Choices, TheStateBeforeIsKeptByThoseWhoFindIt) {
+TEST(Choices, NoProcessHoldsManySquaresUnderGivenTractions) {
   auto config = test::coarse_case();
-  EXPECT_FALSE(has_distributed_displacements(config, 4));
-  config.loading.solver = statics::StaticSolver::petsc;
-  EXPECT_TRUE(has_distributed_displacements(config, 4));
-  EXPECT_FALSE(has_distributed_displacements(config, 1));
-  auto free_top = config, ramp = config;
-  free_top.loading.top_during_tilt = statics::TopEdge::free;
-  EXPECT_FALSE(has_distributed_displacements(free_top, 4));
-  ramp.loading.method = statics::LoadingMethod::ramp;
-  EXPECT_FALSE(has_distributed_displacements(ramp, 4));
-}
-
-TEST(Choices, NoProcessHoldsManySquaresWhereAllKeepTheStateBefore) {
-  auto config = test::coarse_case();
-  config.loading.solver = statics::StaticSolver::petsc;
-  EXPECT_FALSE(leader_has_interface_only(config, 4));  // few nodes
+  config.loading.method = statics::LoadingMethod::prestress;
+  EXPECT_FALSE(root_has_interface_only(config, 4));  // few nodes
   config.plate.element_size_m = 0.1e-3;
   ASSERT_EQ(config.plate.corner, mesh::Corner::relief);
-  EXPECT_TRUE(leader_has_interface_only(config, 4));
-  EXPECT_FALSE(leader_has_interface_only(config, 1));
-  EXPECT_FALSE(leader_has_interface_only(config, 4, false));
-  auto deep = config, fillet = config, graded = config, stretched = config;
+  EXPECT_TRUE(root_has_interface_only(config, 4));
+  EXPECT_FALSE(root_has_interface_only(config, 1));
+  auto deep = config, fillet = config, graded = config, stretched = config, tilted = config;
   stretched.plate.width_m *= 1 + 2e-9;
-  EXPECT_FALSE(leader_has_interface_only(stretched, 4));
+  EXPECT_FALSE(root_has_interface_only(stretched, 4));
   stretched.plate.width_m = config.plate.width_m * (1 + 1e-11);
-  EXPECT_TRUE(leader_has_interface_only(stretched, 4));
+  EXPECT_TRUE(root_has_interface_only(stretched, 4));
   deep.plate.relief_depth_m = deep.plate.height_m;
-  EXPECT_FALSE(leader_has_interface_only(deep, 4));
+  EXPECT_FALSE(root_has_interface_only(deep, 4));
   fillet.plate.corner = mesh::Corner::fillet;
-  EXPECT_FALSE(leader_has_interface_only(fillet, 4));
+  EXPECT_FALSE(root_has_interface_only(fillet, 4));
   graded.plate.coarsenings = 1;
-  EXPECT_FALSE(leader_has_interface_only(graded, 4));
+  EXPECT_FALSE(root_has_interface_only(graded, 4));
+  tilted.loading.method = statics::LoadingMethod::direct;
+  EXPECT_FALSE(root_has_interface_only(tilted, 4));
 }
 
 }  // namespace

@@ -49,5 +49,17 @@ TEST(FinishedRuns, ServeForTheirCaseAlone) {
   expect_taken(false);
 }
 
+TEST(FinishedRuns, ServeForTheirTableOfFrictionAlone) {
+  auto config = test::coarse_case(), of_other_table = config;
+  test::set_table(config, "x_m,mu_k\n0,0.6\n0.2,0.6\n");
+  test::set_table(of_other_table, "x_m,mu_k\n0,0.6\n0.2,0.7\n");
+  const test::TemporaryFolder folder;
+  const FinishedRuns finished(folder / "runs");
+  const auto initial = make_initial_state(config, test::go_on);
+  finished.keep(run_from(config, initial, test::go_on), initial);
+  EXPECT_TRUE(finished.has(config));
+  EXPECT_FALSE(finished.has(of_other_table));
+}
+
 }  // namespace
 }  // namespace slipfront::run

@@ -52,14 +52,14 @@ TEST(LargePlate, NeedsSeveralProcesses) {
   const auto config = one_body();
   EXPECT_TRUE(input::can_be_held_in_parts(config));
   const auto one = AllOf(HasSubstr("plate.element_size_m is 0.001 m"), HasSubstr("1e+10 nodes"),
-                         HasSubstr("one process can number; use more processes"));
+                         HasSubstr("one rank can number; use more ranks"));
   const auto info_error = [&](const auto&... sharing) {
     return test::error_of([&] { info(config, sharing...); });
   };
   EXPECT_THAT(test::check_error(config), one);
   EXPECT_THAT(info_error(), one);
-  EXPECT_THAT(info_error(Sharing{1, 1}), one);
-  EXPECT_THAT(info_error(Sharing{2, 2}), HasSubstr("at least 5"));
+  EXPECT_THAT(info_error(1), one);
+  EXPECT_THAT(info_error(2), HasSubstr("at least 5"));
   // A low plate beside a base that is too large.
   auto on_base = two_bodies();
   on_base.plate.height_m = 0.1;
@@ -72,23 +72,8 @@ TEST(LargePlate, NeedsSeveralProcesses) {
   for (const auto& other : {graded, rounded, tilted}) EXPECT_FALSE(input::can_be_held_in_parts(other));
 }
 
-TEST(LargePlate, HasNoMoreUnknownsThanPetscCanNumber) {
-  auto config = test::coarse_case();
-  config.loading.solver = statics::StaticSolver::petsc;
-  config.plate.corner = mesh::Corner::none;
-  config.plate.width_m = config.plate.height_m = 0.9;
-  config.plate.element_size_m = 3e-5;  // 9e8 nodes
-  EXPECT_EQ(test::error_of([&] { check_interfaces(config); }), test::accepted);
-  config.plate.element_size_m = 2.4e-5;  // 1.4e9
-  const auto refused =
-      AllOf(HasSubstr("1.41e+09 nodes"), HasSubstr("1.07e+09 whose unknowns PETSc can number"));
-  EXPECT_THAT(test::error_of([&] { check_interfaces(config); }), refused);
-  EXPECT_THAT(test::check_error(config), refused);
-  EXPECT_THAT(test::error_of([&] { info(config, Sharing{1000, 1000}); }), refused);
-}
-
 TEST(LargePlate, InfoCountsItsNodes) {
-  const auto info = run::info(two_bodies(), Sharing{10000, 10000});
+  const auto info = run::info(two_bodies(), 10000);
   EXPECT_EQ(info.n_nodes, 2 * n_columns * of_column);
   EXPECT_EQ(info.n_cells, 2 * (n_columns - 1) * (of_column - 1));
   EXPECT_EQ(info.n_interface, n_columns);

@@ -60,15 +60,14 @@ TEST(Needs, OfOneAmongManyIsItsPart) {
   EXPECT_GT(of({4, 4, true}), of({4, 1, true}));
 }
 
-TEST(Info, OfProcessesFollowsTheirNetwork) {
+TEST(Info, OfRanksIsOfTheirSubdomains) {
   const auto config = coarse_case(interface::EventKind::left, 1e-3);
-  const auto shared = [&](const Network& network) { return *info(config, Sharing{3, 3, network}).shared; };
-  EXPECT_EQ(shared({}).partition.n_subdomains(), 3);
-  EXPECT_LT(shared({}).memory_bytes, shared({}).leader_memory_bytes);
-  // So slow that no computing meanwhile hides it.
-  EXPECT_GT(shared({1e3, 10e9}).expected_s, shared({}).expected_s);
-  EXPECT_GT(shared({0.5e-6, 1}).expected_s, shared({}).expected_s);
-  EXPECT_THROW(info(config, Sharing{1000, 4, {}}), UserError);
+  const auto one = *info(config, 1).shared, three = *info(config, 3).shared;
+  EXPECT_EQ(three.partition.n_subdomains(), 3);
+  EXPECT_LT(three.memory_bytes, three.root_memory_bytes);
+  EXPECT_LT(three.efficiency, one.efficiency);
+  EXPECT_GT(three.bytes_per_step, 0);
+  EXPECT_THROW(info(config, 1000), UserError);
 }
 
 TEST(Needs, CountTheStepsOfTheRamp) {

@@ -279,6 +279,7 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
   CheckpointHead head;
   head.program = "slipfront 0.0.1";
   checkpoints.keep(head, [](results::OutputArchive&) {});
+  EXPECT_EQ(this->checkpoints().size(), 2U);  // the oldest has gone
   EXPECT_THAT(resume_error(), HasSubstr("was begun by slipfront 0.0.1, and this is slipfront "));
 }
 

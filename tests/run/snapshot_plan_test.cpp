@@ -19,12 +19,12 @@ using ::testing::IsEmpty;
 TEST(SnapshotPlan, LeavesOutWhatTheRunCannotTake) {
   auto config = coarse_case();
   config.time.end_s = 100e-6;
-  config.output.snapshot_times_s = {0, 10e-6, 10.5e-6, 11e-6, 100e-6, 101e-6, 1};
-  // Steps of 1 us: at 10, 11 and 11 us.
+  config.output.snapshot_times_s = {0, 0.5e-6, 10e-6, 10.5e-6, 11e-6, 100e-6, 101e-6, 1};
+  // Steps of 1 us: at 0, 1, 10, 11 and 11 us.
   const auto plan = snapshot_plan(config, 1e-6);
-  EXPECT_THAT(plan.times_s, ElementsAre(0, 10e-6, 10.5e-6, 100e-6));
-  EXPECT_THAT(plan.notes, ElementsAre(AllOf(HasSubstr("2 of 7"), HasSubstr("time.end_s = 0.0001")),
-                                      AllOf(HasSubstr("1 of 7"), HasSubstr("into the step"))));
+  EXPECT_THAT(plan.times_s, ElementsAre(0, 0.5e-6, 10e-6, 10.5e-6, 100e-6));
+  EXPECT_THAT(plan.notes, ElementsAre(AllOf(HasSubstr("2 of 8"), HasSubstr("time.end_s = 0.0001")),
+                                      AllOf(HasSubstr("1 of 8"), HasSubstr("into the step"))));
   config.output.snapshot_times_s = {0, 10e-6};
   EXPECT_THAT(snapshot_plan(config, 1e-6).notes, IsEmpty());
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "reference.hpp"
+#include "solid/element.hpp"
 
 namespace slipfront::solid {
 namespace {
@@ -71,6 +72,25 @@ double amplification(double omega, double beta, double dt) {
   Eigen::Matrix2d step;  // (u, v)
   step << 1 - dt * kick, dt * (1 - kick * beta), -kick, 1 - kick * beta;
   return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+TEST(LargestCellFrequency, TellsCellsApartByEachCorner) {
+  const Material m;
+  constexpr CellCoordinates unit_square = {0, 0, 1, 0, 1, 1, 0, 1};
+  for (int corner = 0; corner < 4; ++corner) {
+    auto other = unit_square;
+    for (int i = 2 * corner; i < 2 * corner + 2; ++i) other[i] += 0.3 - 0.6 * unit_square[i];  // inwards
+    mesh::Mesh mesh;
+    for (const auto& cell : {unit_square, other})
+      for (int a = 0; a < 4; ++a) {
+        mesh.x_m.push_back(cell[2 * a]);
+        mesh.y_m.push_back(cell[2 * a + 1]);
+      }
+    mesh.cells = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+    const double of_other = cell_frequency_rad_per_s(other, m);
+    ASSERT_GT(of_other, cell_frequency_rad_per_s(unit_square, m));
+    EXPECT_NEAR(largest_cell_frequency_rad_per_s(mesh, m, {true, true}) / of_other, 1, 1e-12) << corner;
+  }
 }
 
 TEST(StableStep, IsWhereTheAmplificationPassesOne) {

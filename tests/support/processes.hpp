@@ -11,6 +11,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -19,36 +20,27 @@
 
 namespace slipfront::test {
 
-/// Threads of one process that send each other parcels as processes do.
+/// Messages between threads that stand for ranks.
 class Mailboxes {
  public:
   explicit Mailboxes(int size) : size_(size) {}
   int size() const { return size_; }
-  static constexpr int of_parcels = -1;
-  void put(int from, int to, MessageBuffer buffer, int channel = of_parcels) {
+  static constexpr int of_messages = -1;
+  void put(int from, int to, MessageBuffer buffer, int channel = of_messages) {
     const std::scoped_lock lock(mutex_);
     boxes_[{from, to, channel}].push_back(std::move(buffer));
     changed_.notify_all();
   }
-  MessageBuffer take(int from, int to, int channel = of_parcels) {
-    return take_first_of(from, from + 1, to, channel);
+  MessageBuffer take(int from, int to, int channel = of_messages) {
+    std::unique_lock lock(mutex_);
+    auto& box = boxes_[{from, to, channel}];
+    changed_.wait(lock, [&] { return !box.empty(); });
+    auto buffer = std::move(box.front());
+    box.pop_front();
+    return buffer;
   }
-  /// A parcel of whichever sender.
-  MessageBuffer take_any(int to) { return take_first_of(0, size_, to, of_parcels); }
 
  private:
-  MessageBuffer take_first_of(int begin, int end, int to, int channel) {
-    std::unique_lock lock(mutex_);
-    for (;; changed_.wait(lock))
-      for (int from = begin; from < end; ++from) {
-        auto& box = boxes_[{from, to, channel}];
-        if (box.empty()) continue;
-        auto buffer = std::move(box.front());
-        box.pop_front();
-        return buffer;
-      }
-  }
-
   int size_;
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -98,7 +90,6 @@ class ThreadProcess final : public Processes {
   int size() const override { return mail_.size(); }
   void send(int to, const MessageBuffer& buffer) override { mail_.put(rank_, to, buffer); }
   MessageBuffer receive(int from) override { return mail_.take(from, rank_); }
-  MessageBuffer receive_any() override { return mail_.take_any(rank_); }
   std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {
     return std::make_unique<Sent>(mail_, rank_, rank, channel, bytes);
   }
@@ -114,8 +105,8 @@ class ThreadProcess final : public Processes {
       for (std::size_t k = 0; k < values.size(); ++k) values[k] = std::max(values[k], theirs[k]);
     }
   }
-  [[noreturn]] void fail(const std::string& message) override {
-    std::fprintf(stderr, "process %d: %s\n", rank_, message.c_str());
+  [[noreturn]] void fail(int /*exit_code*/, const std::string& line) override {
+    std::fprintf(stderr, "%s\n", line.c_str());
     std::abort();
   }
 
@@ -123,5 +114,20 @@ class ThreadProcess final : public Processes {
   Mailboxes& mail_;
   int rank_;
 };
+
+/// Runs f(rank) for each of some ranks, in threads. @throws what rank 0 throws
+template <class F>
+void on_ranks(int n, F&& f) {
+  std::vector<std::jthread> others;
+  for (int rank = 1; rank < n; ++rank)
+    others.emplace_back([&f, rank] {
+      try {
+        f(rank);
+      } catch (const FailedElsewhere&) {
+        // Rank 0 tells.
+      }
+    });
+  f(0);
+}
 
 }  // namespace slipfront::test

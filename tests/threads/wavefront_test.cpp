@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace slipfront::threads {
@@ -40,6 +43,20 @@ std::vector<double> diffused(int threads, int depth, int units, int steps) {
 TEST(Wavefront, ComputesWhatStepAfterStepDoes) {
   for (const auto& [threads, depth, units, steps] : shapes)
     EXPECT_EQ(diffused(threads, depth, units, steps), diffused(1, 1, units, steps));
+}
+
+TEST(Wavefront, AUnitBeginsWhenTheNextOneOfTheStepBeforeHasEnded) {
+  for (const auto& shape : shapes) {
+    const int units = shape.units;
+    std::vector<std::atomic<int>> ended(static_cast<std::size_t>(shape.steps) + 1);
+    ended.front() = units;
+    Wavefront(shape.threads, shape.depth).run(0, shape.steps, units, [&](std::int64_t step, int unit) {
+      EXPECT_GE(ended[static_cast<std::size_t>(step)], std::min(unit + 2, units));
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+      ended[static_cast<std::size_t>(step) + 1] = unit + 1;
+      return true;
+    });
+  }
 }
 
 TEST(Wavefront, EndsAfterTheStepThatAsksForIt) {

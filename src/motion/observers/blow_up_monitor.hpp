@@ -11,7 +11,7 @@ namespace slipfront::motion {
 
 /// Monitors that the motion stays physical: in every step numbers finite and slip rates below c_L, and
 /// whenever energies are known and at least every 100 steps no more energy than was there at the start and
-/// has been supplied since, but for 1 %.
+/// has been supplied since, but for 1 %, and terms that close the balance.
 class BlowUpMonitor final : public Observer {
  public:
   /// @param start  energies at time 0
@@ -26,6 +26,9 @@ class BlowUpMonitor final : public Observer {
   const char* name() const override { return "blow-up"; }
   void archive(StateArchive& archive) override { archive(start_, checked_step_); }
   void restored(Pause& pause) override;
+  /// Whether energies close the balance since the start, up to rounding; in single precision whether they are
+  /// numbers.
+  bool balances(const record::Energies& now) const;
 
  private:
   std::string energy_failure(const record::Energies& now) const;

@@ -4,7 +4,6 @@
 #include <functional>
 #include <utility>
 
-#include "base/interruption.hpp"
 #include "motion/observer.hpp"
 
 namespace slipfront::motion {
@@ -22,7 +21,7 @@ class Progress final : public Observer {
   std::int64_t steps_to_pause(const Now& now) const override { return interval_ - now.step % interval_; }
   std::optional<End> end(Pause& pause) override {
     const auto step = pause.now().step;
-    if (step == asked_step_ || (step % interval_ != 0 && !is_interruption_wanted())) return {};
+    if (step == asked_step_ || (step % interval_ != 0 && !pause.stepper().is_interrupted())) return {};
     asked_step_ = step;
     if (monitor_(step, total_)) return {};
     return End{EventEnd::interrupted};
