@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "mesh/slabs.hpp"
@@ -23,33 +21,14 @@ struct SnapshotSeries {
 /// @param snapshots  must last as long
 SnapshotSeries series_of(std::span<const motion::Snapshot> snapshots);
 
-/// What a Writer ends with where another one could not go on.
-class FailedElsewhere : public std::runtime_error {
- public:
-  FailedElsewhere() : std::runtime_error("another rank could not write") {}
-};
-
-/// One of the ranks that fill a file together: `count` of them each some slabs of its mesh; of further
-/// ones nothing is asked but is_any. What one has filled another one compares.
+/// One of the ranks that fill a file together: `count` of them each some slabs of its mesh. What one has
+/// filled another one compares.
 struct Writer {
   int number = 0, count = 1;
-  /// Called by all, as often: whether it is so of any of them.
-  std::function<bool(bool)> is_any = [](bool here) { return here; };
+  /// Does a part of the work of all, further ranks included: where it fails for one of them, it ends for all.
+  std::function<void(const std::function<void()>& work)> together = [](const auto& work) { work(); };
 
   bool leads() const { return number == 0; }
-  /// Does a part of the work of all: where it fails for one of them, it ends for all.
-  template <class F>
-  void together(F&& work) const {
-    std::exception_ptr failure;
-    try {
-      work();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    if (!is_any(failure != nullptr)) return;
-    if (failure) std::rethrow_exception(failure);
-    throw FailedElsewhere();
-  }
 };
 
 /// Writes a fields.vtkhdf and compares it with what it should hold: VTKHDF (version 2.0) unstructured grid,
@@ -61,7 +40,7 @@ struct Writer {
 ///
 /// The first writer makes the file with the places of all numbers, so that its bytes do not depend on the
 /// number of writers; each of them puts its own ones there, without HDF5.
-/// @throws WriteError, FailedElsewhere, and what the series throws
+/// @throws WriteError, and what the series and `together` throw
 void write_snapshots(const std::filesystem::path& file, const mesh::Slabs& mesh, const SnapshotSeries& series,
                      const SnapshotContents& contents = {}, const Writer& writer = {});
 

@@ -94,19 +94,6 @@ void write(const Order& order, const input::Case& config, const std::function<Sn
   results::write_snapshots(order.file, mesh->slabs, series, snapshot_contents(config, *mesh), writer);
 }
 
-/// This rank's share.
-void write_share(const Order& order, const input::Case& config, Processes& processes) {
-  const auto is_any = [&](bool here) {
-    double value = here ? 1 : 0;
-    processes.reduce_max(std::span(&value, 1));
-    return value > 0;
-  };
-  const auto make_mesh = [&] {
-    return snapshot_mesh_in_rows(config, order.plate, order.base, processes.size());
-  };
-  write(order, config, make_mesh, {processes.rank(), processes.size(), is_any});
-}
-
 /// Whether all ranks see the files of rank 0, and it sees theirs.
 bool all_see(const Order& order, Processes& processes) {
   const int rank = processes.rank();
@@ -152,17 +139,17 @@ void write_fields(const results::ResultFolder* folder, const input::Case& config
     order.put(to);
   });
   const auto order = Order::take(told);
-  if (is_in_rows && order.n_snapshots > 0 && all_see(order, processes)) try {
-      return processes.together([&] {
-        try {
-          write_share(order, config, processes);
-        } catch (const results::FailedElsewhere&) {
-          // The other rank tells why.
-        }
-      });
+  if (is_in_rows && order.n_snapshots > 0 && all_see(order, processes)) {
+    const auto make_mesh = [&] {
+      return snapshot_mesh_in_rows(config, order.plate, order.base, processes.size());
+    };
+    try {
+      return write(order, config, make_mesh,
+                   {processes.rank(), processes.size(), [&](const auto& work) { processes.together(work); }});
     } catch (const ProcessError& error) {
       throw WriteError("{}", error.what());
     }
+  }
   processes.from_root([&](MessageBuffer&) {
     if (is_in_rows && order.n_snapshots > 0)
       note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",

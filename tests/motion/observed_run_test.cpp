@@ -109,11 +109,8 @@ TEST_F(Loop, KeepsTheStateOfThoseThatHaveOne) {
   const Noting::Plan kept{.interval = 1, .end_step = 7, .has_state = true};
   const Noting::Plan other{.interval = 1, .has_state = true};
   auto run = run_of({{"a", kept}, {"b", {}}});
-  test::MemoryArchive state;
-  run.archive(state);
-  state.rewind();
   auto restored = run_of({{"b", {}}, {"a", other}, {"c", {}}});
-  restored.archive(state);
+  test::copy_state(run, restored);
   restored.require_restored();
   EXPECT_THAT(notes_, ElementsAre("b restored 0", "a restored 0", "c restored 0"));
   notes_.clear();
@@ -122,11 +119,8 @@ TEST_F(Loop, KeepsTheStateOfThoseThatHaveOne) {
 
   using Plans = std::vector<std::pair<std::string, Noting::Plan>>;
   for (const auto& plans : {Plans{}, {{"c", kept}}, {{"a", kept}, {"b", kept}}}) {
-    test::MemoryArchive again;
-    run.archive(again);
-    again.rewind();
     auto of_others = run_of(plans);
-    EXPECT_THROW(of_others.archive(again), StateError);
+    EXPECT_THROW(test::copy_state(run, of_others), StateError);
   }
 }
 
