@@ -104,7 +104,7 @@ record::SlipRecord record_of(const statics::Equilibrium& before, const interface
   Recorder recorder(before, static_mu, 0);
   recorder.observe(0, first, false);
   recorder.observe(2, second, true);
-  const auto record = recorder.record_until(2);
+  auto record = recorder.record_until(2);
   EXPECT_EQ(record.onsets.size(), 1);
   return record;
 }
