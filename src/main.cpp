@@ -100,7 +100,7 @@ void run(int argc, char** argv, slipfront::Processes& processes) {
   program.run(argc, argv);
 }
 
-/// The exit code for an exception, and the line that says why
+/// The exit code for the exception under way, and the line that says why.
 std::pair<int, std::string> reason_to_end() try { throw; } catch (const slipfront::UserError& error) {
   return {user_error, error.what()};
 } catch (const slipfront::BlowUp& error) {

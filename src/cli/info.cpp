@@ -238,8 +238,7 @@ void add_info(CLI::App& app) {
   command->group("Cases");
   const auto arguments = add_case_arguments(*command);
   auto n_processes = std::make_shared<std::optional<int>>();
-  command
-      ->add_option("--processes", *n_processes, "Also predict time and memory of a run on so many MPI ranks")
+  command->add_option("--processes", *n_processes, "Also predict time and memory of a run on N MPI ranks")
       ->check(CLI::Range(1, 10'000'000));
   command->callback([arguments, n_processes] { print_info(*arguments, *n_processes); });
 }

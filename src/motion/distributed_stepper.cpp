@@ -442,32 +442,27 @@ std::vector<double> DistributedStepper::probed_v_m_per_s() const {
 }
 
 double DistributedStepper::sum(double own) const {
-  double sum = 0;
-  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own))) sum += of_rank.take<double>();
-  return sum;
+  const auto of_ranks = processes_.all_gather_value(own);
+  return std::accumulate(of_ranks.begin(), of_ranks.end(), 0.0);
 }
 
 record::Energies DistributedStepper::energies() {
   halo_->finish();
   record::Energies sum;
-  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(stepper_->energies())))
-    add_terms(sum, of_rank.take<record::Energies>());
+  for (const auto& of_rank : processes_.all_gather_value(stepper_->energies())) add_terms(sum, of_rank);
   sum.time_s = time_s();
   return sum;
 }
 
 std::vector<SubdomainCost> DistributedStepper::costs() const {
   const auto& now = processes_.counters();
-  const SubdomainCost own = {.steps = stepper_->step() - first_counted_step_,
-                             .messages = now.messages - counted_before_.messages,
-                             .bytes = now.bytes - counted_before_.bytes,
-                             .computing_s = halo_->computing_s(),
-                             .exchange_s = now.exchange_s - counted_before_.exchange_s,
-                             .collective_s = now.collective_s - counted_before_.collective_s};
-  std::vector<SubdomainCost> costs;
-  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own)))
-    costs.push_back(of_rank.take<SubdomainCost>());
-  return costs;
+  return processes_.all_gather_value(
+      SubdomainCost{.steps = stepper_->step() - first_counted_step_,
+                    .messages = now.messages - counted_before_.messages,
+                    .bytes = now.bytes - counted_before_.bytes,
+                    .computing_s = halo_->computing_s(),
+                    .exchange_s = now.exchange_s - counted_before_.exchange_s,
+                    .collective_s = now.collective_s - counted_before_.collective_s});
 }
 
 double DistributedStepper::node_updates_per_step() const {

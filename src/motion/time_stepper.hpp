@@ -108,7 +108,7 @@ class TimeStepper {
   virtual double energy_of_tractions_J_per_m() const = 0;
 
   /// A snapshot is written in chunks, so that no rank holds all of it: u_x, u_y, v_x, v_y [nodes], one after
-  /// the other, in so many; of several ranks rank 0 gets them, the others nothing.
+  /// the other. On several ranks rank 0 gets the values, the others get none.
   virtual int n_snapshot_chunks() const = 0;
   /// Bytes of the largest of them.
   virtual std::size_t snapshot_chunk_bytes() const = 0;

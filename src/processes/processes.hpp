@@ -82,6 +82,13 @@ class Processes {
   MessageBuffer broadcast(MessageBuffer buffer);
   /// The buffers of all ranks, in their order, on all ranks.
   std::vector<MessageBuffer> all_gather(const MessageBuffer& own);
+  /// The values of all ranks, in their order, on all ranks.
+  template <class T>
+  std::vector<T> all_gather_value(const T& own) {
+    std::vector<T> values;
+    for (auto& buffer : all_gather(MessageBuffer().put(own))) values.push_back(buffer.template take<T>());
+    return values;
+  }
   /// Shows rank 0 the buffers of all ranks, one after the other.
   void gather(MessageBuffer own, const std::function<void(int rank, MessageBuffer& buffer)>& take);
   /// Gives each rank the buffer that rank 0 makes for it.

@@ -92,7 +92,7 @@ struct Friction {
   }
 };
 
-/// Ends a run of steps where it is told to.
+/// Ends a run at a given step, or where it is interrupted.
 class Until final : public motion::Observer {
  public:
   std::int64_t step = 0;

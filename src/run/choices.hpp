@@ -51,7 +51,7 @@ bool has_snapshots(const input::Case& config);
 
 /// Whether rank 0 of several needs no more of the bodies than their interfaces (see
 /// mesh::make_interface) and the cells at their corners: nothing is strained before the event, and all other
-/// cells are equal squares, so many that the step follows from their side.
+/// cells are equal squares, enough of them for the stable step to follow from their side.
 bool root_has_interface_only(const input::Case& config, int n_processes);
 
 /// Given tractions at the nodes of the interface, from their file if there is one.

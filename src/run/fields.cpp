@@ -96,12 +96,11 @@ void write(const Order& order, const input::Case& config, const std::function<Sn
 
 /// Whether all ranks see the files of rank 0, and it sees theirs.
 bool all_see(const Order& order, Processes& processes) {
-  const int rank = processes.rank();
-  auto answers = processes.all_gather(MessageBuffer().put(processes.is_root() || answers_sign(order, rank)));
   bool all_see = true;
-  for (int other = 1; other < processes.size(); ++other)
-    all_see = answers[static_cast<std::size_t>(other)].take<bool>() && all_see &&
-              (rank > 0 || holds_sign(sign_of(order, other), order));
+  const bool sees = processes.is_root() || answers_sign(order, processes.rank());
+  processes.gather(std::move(MessageBuffer().put(sees)), [&](int rank, MessageBuffer& answer) {
+    all_see = answer.take<bool>() && (rank == 0 || holds_sign(sign_of(order, rank), order)) && all_see;
+  });
   return processes.broadcast(std::move(MessageBuffer().put(all_see))).take<bool>();
 }
 

@@ -238,7 +238,7 @@ void Session::restore_event(Checkpoints::Checkpoint* kept) {
       kept->rest(*event_);
       kept->rest.close();
     });
-    to.append(packed(*event_));
+    if (processes_.size() > 1) to.append(packed(*event_));  // as large as the record of slip
   });
   if (!is_root()) MessageArchive::reader(of_event)(*event_);
   read_from(kept, [&] { processes_.together([&] { event_->require_restored(); }); });
