@@ -120,7 +120,7 @@ test-slow: ready-to-test  ## the tests in Python that take longest: trials, tuto
 	@scripts/run-tests $(BUILD) $(PYTHON) slow
 
 test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process, with 2 and 3 of them
-	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q tests/mpi
+	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q --numprocesses="$$(nproc)" --dist=worksteal tests/mpi
 
 # The paper's runs and figures; the argument adds options.
 define REPRODUCE
@@ -257,15 +257,17 @@ SINCE ?= 2 days ago
 # In a folder of its own: clang cannot read what gcc has precompiled, and each file has to name what it uses.
 define CLANG_TIDY
 cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF
-run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/tidy $(1) > build/tidy.log 2>&1 || { grep -E '(error|warning): ' build/tidy.log | sort -u; exit 1; }
+run-clang-tidy-14 -quiet $(addprefix -extra-arg=,-Wno-unknown-warning-option $(2)) -p build/tidy $(1) > build/tidy.log 2>&1 || { grep -E '(error|warning): ' build/tidy.log | sort -u; exit 1; }
 @echo "clang-tidy: no findings"
 endef
 
 tidy: packages lint-packages  ## clang-tidy over the program's sources, or TIDY=src/ROOM alone; fails at any finding
 	$(call CLANG_TIDY,'^$(CURDIR)/$(TIDY)/.*')
 
-tidy-recent: packages lint-packages  ## the same over what the commits since SINCE="2 days ago" have changed
-	$(call CLANG_TIDY,$$(scripts/changed-sources '$(SINCE)'))
+# The analyser follows paths through a function up to this many states, instead of 225,000: half the time.
+SHORT_PATHS := -Xclang -analyzer-config -Xclang max-nodes=20000
+tidy-recent: packages lint-packages  ## the same, less deep, over what the commits since SINCE="2 days ago" have changed
+	$(call CLANG_TIDY,$$(scripts/changed-sources '$(SINCE)'),$(SHORT_PATHS))
 
 hostile: ready-to-test  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
 	PYTHONPATH=tests $(PYTHON) -m hostile $(PROGRAM)
