@@ -12,7 +12,7 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
-#include "results/contents.hpp"
+#include "results/stream.hpp"
 #include "run/initial_state.hpp"
 #include "run/mesh_choice.hpp"
 #include "run/needs.hpp"
@@ -114,9 +114,9 @@ inline constexpr const char* friction_file = "friction.csv";
 
 /// The case as case.resolved.toml has it: its tables lie beside it.
 std::string resolved_text(const input::Case& config);
-/// What a run's HDF5 files say of where they come from.
-results::Origin origin_of(const input::Case& config);
-/// What a case's fields.vtkhdf holds.
+/// What the files of its rows hold. @param step_s  of its event
+results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s);
+/// What a case's fields.vtkhdf holds besides.
 results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh);
 
 /// Writes them all.

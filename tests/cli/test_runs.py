@@ -273,7 +273,7 @@ PROGRESS = r"event: \d+ %, [0-9.e+]+ steps/s, \S+( s)? to go"
 def test_progress_without_a_terminal_is_plain_lines(program, coarse, tmp_path):
     """A line comes after 10 s, which the program here stands still."""
     process = program.start("run", coarse, "-o", "out", *with_end(1))
-    history = tmp_path / "out/unfinished/state/history.raw"
+    history = tmp_path / "out/unfinished/interface.h5"
     wait_until(lambda: history.exists() and history.stat().st_size > 0, process)
     assert freeze(process)
     time.sleep(10)

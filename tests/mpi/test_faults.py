@@ -251,10 +251,10 @@ def test_interrupted_leader_in_the_statics(mpirun, case):
 
 def test_checkpoint_on_request(mpirun, case, undisturbed):
     """Again where it was over before it was asked."""
-    state = mpirun.folder / "out/unfinished/state"
+    history = mpirun.folder / "out/unfinished/interface.h5"
     for _ in range(TRIES):
         process = mpirun.start(2, "run", case, "-o", "out")
-        wait_until_or_over((state / "history.raw").exists, process)
+        wait_until_or_over(history.exists, process)
         process.send_signal(signal.SIGUSR1)
         result = require_done(finished(process))
         require_undisturbed(mpirun, case, undisturbed)
