@@ -433,7 +433,7 @@ def read_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
 
 
 def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Of an open interface.h5 times and, by name, HISTORY_FIELDS [times, nodes]; a cut row at the end is left."""
+    """Times and, by name, HISTORY_FIELDS [times, nodes] of an open interface.h5, without a cut row at its end."""
     data = read_bytes(file)[head_bytes(file) :]
     n = len(x_m)
     width = 1 + len(HISTORY_FIELDS) * n

@@ -84,8 +84,8 @@ bool all_see(const Order& order, Processes& processes) {
 Order order_of(const results::ResultFolder& folder) {
   const auto file = std::filesystem::absolute(folder.unfinished() / results::snapshot_file);
   if (!files::is_there(file)) return {};
-  return {file, std::filesystem::file_size(file),
-          std::filesystem::absolute(folder.state() / "seen-by-all"), unique_text()};
+  return {file, std::filesystem::file_size(file), std::filesystem::absolute(folder.state() / "seen-by-all"),
+          unique_text()};
 }
 
 }  // namespace
