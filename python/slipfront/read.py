@@ -433,7 +433,7 @@ def read_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
 
 
 def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Times and, by name, HISTORY_FIELDS [times, nodes] of an open interface.h5, without a cut row at its end."""
+    """Times and, by name, HISTORY_FIELDS [times, nodes] of an open interface.h5; a cut row is left out."""
     data = read_bytes(file)[head_bytes(file) :]
     n = len(x_m)
     width = 1 + len(HISTORY_FIELDS) * n

@@ -12,7 +12,7 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
-#include "results/stream.hpp"
+#include "results/contents.hpp"
 #include "run/initial_state.hpp"
 #include "run/mesh_choice.hpp"
 #include "run/needs.hpp"
@@ -21,6 +21,10 @@
 #include "run/subdomains.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
+
+namespace slipfront::results {
+struct RunFiles;
+}
 
 namespace slipfront::run {
 

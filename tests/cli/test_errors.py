@@ -198,7 +198,7 @@ def test_full_disk_does_not_cost_earlier_results(program, coarse, tmp_path):
 
 def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
     """The rows of fields.vtkhdf just fit, what lies behind them does not."""
-    case = (coarse, "-q", *sets("output.snapshot_times_s=[0, 1e-5]"))
+    case = (coarse, "-q", *sets("output.history_interval_s=1e-5", "output.snapshot_times_s=[0, 1e-5]"))
     require_done(program("run", *case, "-o", "whole"))
     most = (tmp_path / "whole/fields.vtkhdf").stat().st_size - 1
     assert "fields.vtkhdf" in one_line(program("run", *case, "-o", "out", file_bytes=most), 1)
