@@ -274,7 +274,7 @@ def test_progress_without_a_terminal_is_plain_lines(program, coarse, tmp_path):
     """A line comes after 10 s, which the program here stands still."""
     process = program.start("run", coarse, "-o", "out", *with_end(1))
     history = tmp_path / "out/unfinished/interface.h5"
-    wait_until(lambda: history.exists() and history.stat().st_size > 0, process)
+    wait_until(lambda: history.exists() and history.stat().st_size > 1 << 17, process)  # behind its head
     assert freeze(process)
     time.sleep(10)
     process.send_signal(signal.SIGCONT)
