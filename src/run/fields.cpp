@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <exception>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <random>
-#include <span>
 #include <system_error>
 #include <utility>
 
