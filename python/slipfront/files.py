@@ -23,6 +23,7 @@ import numpy as np
 from slipfront.errors import Error
 from slipfront.errors import one_line as one_line
 
+ROWS = "rows"  # the data set of a file of rows whose numbers others show
 LARGEST_TEXT_BYTES = 2**30
 LARGEST_PACKING = 1032  # of deflate: no data set unpacks to more than so many times its bytes in the file
 
@@ -264,7 +265,8 @@ def dataset(group: h5py.Group, name: str, dimensions: int) -> h5py.Dataset:
         raise DataError(f"{file}: no data set '{name}' in '{group.name}'")
     if found.dtype.kind not in "fiu" or found.ndim != dimensions:
         raise DataError(f"{file}: '{name}' is not an array of numbers with {dimensions} dimensions")
-    stored = found.id.get_storage_size()
+    source = group.file.get(ROWS) if found.is_virtual else found
+    stored = source.id.get_storage_size() if isinstance(source, h5py.Dataset) else 0
     if math.prod(found.shape) * found.dtype.itemsize > stored * (
         1 if packing(found) == 0 else LARGEST_PACKING
     ):

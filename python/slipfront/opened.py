@@ -25,8 +25,9 @@ from slipfront.read import (
     BLEW_UP,
     HISTORY_FIELDS,
     Place,
+    is_open,
     n_finite,
-    raw_history,
+    open_history,
     read_fields,
     read_fronts,
     read_place,
@@ -161,10 +162,9 @@ class OpenRun:
     def history(self) -> xr.Dataset:
         """interface.h5: slip_m, slip_rate_m_per_s, t_Pa and p_Pa over time_s and x_m. The slip rate belongs
         to half a (sub-)step later than the time. Of a run that is not over: what there is of it."""
-        raw = self.folder / "state/history.raw"
-        if belongs(raw) and (self._place.growing or not belongs(self.folder / "interface.h5")):
-            return self._raw_history(raw)
         file = result_file(self.folder / "interface.h5")
+        if is_open(file):
+            return self._open_history(file)
         with open_hdf5(file) as hdf5:
             coordinates = {
                 name: xr.Variable((name,), dataset(hdf5, name, 1)[()], attributes_of(hdf5[name], name))
@@ -226,9 +226,10 @@ class OpenRun:
         and cell strain and stress (see absolute_stress), where the case has output.snapshot_stress; x_m and
         y_m of the nodes, and cell_nodes, four of each cell counterclockwise. None of a run without
         snapshots."""
-        if self._place.growing or not belongs(self.folder / "fields.vtkhdf"):
+        file = self.folder / "fields.vtkhdf"
+        if not belongs(file) or is_open(result_file(file)):
             return None
-        mesh = read_fields(self.folder / "fields.vtkhdf")
+        mesh = read_fields(file)
         n_nodes = len(mesh.points_m)
         coordinates = {
             "time_s": xr.Variable(("time_s",), mesh.time_s, attributes("time_s")),
@@ -250,7 +251,7 @@ class OpenRun:
         strain, stress; with prescribed tractions the changes since the start (absolute_stress). None of a run
         without probes."""
         file = self.folder / "probes.h5"
-        if self._place.growing or not belongs(file):
+        if not belongs(file) or is_open(result_file(file)):
             return None
         probes = read_probes(file)
         coordinates = {
@@ -335,9 +336,9 @@ class OpenRun:
         array = StoredArray(file, shape, found.dtype, read, self._kept)
         return stored(dims, array, self._of_motion(found, name))
 
-    def _raw_history(self, file: Path) -> xr.Dataset:
+    def _open_history(self, file: Path) -> xr.Dataset:
         x_m = self.tractions["x_m"].to_numpy()
-        time_s, fields = raw_history(file, x_m)
+        time_s, fields = open_history(file, x_m)
         n = n_finite(time_s, *fields.values()) if self.status == BLEW_UP else len(time_s)
         variables = {
             name: xr.Variable(("time_s", "x_m"), values[:n], attributes(name))

@@ -22,6 +22,7 @@ from slipfront.files import (
     is_folder,
     is_number,
     number,
+    open_file,
     open_hdf5,
     read_bytes,
     read_json_table,
@@ -48,7 +49,7 @@ FRONT_COLUMNS = (
 )
 # What the time says that a tip takes at a row of fronts.csv; there is a speed with the first alone.
 SPEED_KINDS = ("front", "triggered", "simultaneous", "path_end")
-# Per node and row of history.raw, in this order; data sets of interface.h5.
+# Data sets of interface.h5; per row after the time, each at all nodes, in this order.
 HISTORY_FIELDS = ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")
 # Data sets of probes.h5, [times, probes].
 PROBE_FIELDS = (
@@ -79,6 +80,7 @@ ENERGY_TERMS = (
     "coupling_work",
 )
 VTK_QUAD = 9
+BLOCK_BYTES = 4096  # a head of a file of rows is of whole ones
 
 BLEW_UP = "blew_up"  # its last numbers may be no numbers
 # What a run.json tells of the run's end, by "status" or, in older folders, by "end"; None: all is well.
@@ -90,7 +92,7 @@ STATUSES = {
     "running": "still running or killed, results up to",
 }
 OLD_ENDS = {"interrupted": "interrupted", "blow_up": BLEW_UP}
-WITHOUT_END = ("running", "failed")  # these leave history.raw; what else there is may be half written
+WITHOUT_END = ("running", "failed")  # these may leave rows that are half written
 
 
 def ratio(numerator: np.ndarray, denominator: np.ndarray) -> np.ndarray:
@@ -151,7 +153,7 @@ class Fields:
 
 @dataclass(frozen=True)
 class History:
-    """Slip rate and pressure along the interface over time, from interface.h5 or history.raw."""
+    """Slip rate and pressure along the interface over time, from interface.h5."""
 
     time_s: np.ndarray  # [times]
     x_m: np.ndarray  # [nodes]
@@ -403,28 +405,42 @@ def checked_history(file: Path, history: History, blew_up: bool) -> History:
     return history
 
 
-def read_history(file: Path, blew_up: bool = False) -> History:
+def is_open(file: Path) -> bool:
+    """Whether a file of rows is not finished: it begins with the length of its head, not as HDF5 files do."""
+    return head_bytes(file) is not None
+
+
+def head_bytes(file: Path) -> int | None:
+    """Where the rows begin of a file that is not finished; None of others."""
+    with open_file(file) as stream:
+        length = int.from_bytes(stream.read(8), "little")
+    return length if length > 0 and length % BLOCK_BYTES == 0 else None
+
+
+def read_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
+    """The history of a run whose nodes are at `x_m`, as far as there is one."""
     file = result_file(file)
+    if is_open(file):
+        time_s, fields = open_history(file, x_m)
+        history = History(time_s, x_m, fields["slip_rate_m_per_s"], fields["p_Pa"])
+        return checked_history(file, history, blew_up)
     with open_hdf5(file) as hdf5:
-        time_s, x_m = (dataset(hdf5, name, 1)[()] for name in ("time_s", "x_m"))
+        time_s, found_m = (dataset(hdf5, name, 1)[()] for name in ("time_s", "x_m"))
         rate, p = (dataset(hdf5, name, 2)[()] for name in ("slip_rate_m_per_s", "p_Pa"))
-    return checked_history(file, History(time_s, x_m, rate, p), blew_up)
+    history = checked_history(file, History(time_s, found_m, rate, p), blew_up)
+    require_same_nodes(file, found_m, x_m)
+    return history
 
 
-def raw_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """history.raw: times and, by their names, HISTORY_FIELDS [times, nodes]; a cut row at the end is left."""
-    data = read_bytes(result_file(file))
+def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Times and, by name, HISTORY_FIELDS [times, nodes] of an open interface.h5; a cut row is left out."""
+    data = read_bytes(file)[head_bytes(file) :]
     n = len(x_m)
     width = 1 + len(HISTORY_FIELDS) * n
     n_rows = len(data) // (8 * width)
     rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
     fields = {name: rows[:, 1 + k * n : 1 + (k + 1) * n] for k, name in enumerate(HISTORY_FIELDS)}
     return rows[:, 0], fields
-
-
-def read_raw_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
-    time_s, fields = raw_history(file, x_m)
-    return checked_history(file, History(time_s, x_m, fields["slip_rate_m_per_s"], fields["p_Pa"]), blew_up)
 
 
 def read_probes(file: Path) -> Probes:
@@ -521,38 +537,22 @@ def read_place(folder: Path) -> Place:
     return Place(folder.name or folder.resolve().name, place, info, status, reason, tuple(notes))
 
 
-def read_history_of(place: Place, x_m: np.ndarray) -> History:
-    """The history of a run whose nodes are at `x_m`, from the file that has it."""
-    file = history_file(place)
-    blew_up = place.status == BLEW_UP
-    is_raw = file.suffix == ".raw"
-    history = read_raw_history(file, x_m, blew_up) if is_raw else read_history(file, blew_up)
-    require_same_nodes(file, history.x_m, x_m)
-    return history
-
-
-def history_file(place: Place) -> Path:
-    """interface.h5 or, of a run that has not come to its end, state/history.raw."""
-    raw, finished = place.folder / "state/history.raw", place.folder / "interface.h5"
-    return raw if belongs(raw) and (place.growing or not belongs(finished)) else finished
-
-
 def require_same_nodes(file: Path, x_m: np.ndarray, static_x_m: np.ndarray) -> None:
     same = len(x_m) == len(static_x_m) and np.allclose(x_m, static_x_m)
     require(same, file, "its nodes are not those of static.csv: the files are of two runs")
 
 
-#: Reads the history of a run, given where it is and the positions of its nodes.
-HistoryReader = Callable[[Place, np.ndarray], History]
+#: Reads the history of a run, given its file, the positions of its nodes, and whether it blew up.
+HistoryReader = Callable[[Path, np.ndarray, bool], History]
 
 
-def read_run(folder: Path, read_its_history: HistoryReader = read_history_of) -> Run:
+def read_run(folder: Path, read_its_history: HistoryReader = read_history) -> Run:
     place = read_place(folder)
     folder, growing = place.folder, place.growing
     static = read_static(folder / "static.csv")
     blew_up = place.status == BLEW_UP
-    history = read_its_history(place, static["x_m"])
-    has_fields = not growing and belongs(folder / "fields.vtkhdf")
+    history = read_its_history(folder / "interface.h5", static["x_m"], blew_up)
+    has_fields = belongs(folder / "fields.vtkhdf") and not is_open(result_file(folder / "fields.vtkhdf"))
     return Run(
         place=place,
         case=read_toml(result_file(folder / "case.resolved.toml")),

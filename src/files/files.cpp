@@ -127,13 +127,13 @@ PlacedFile::PlacedFile(const std::filesystem::path& path) : path_(path), file_(o
   if (!file_.valid()) throw_write(path_, "written");
 }
 
-void PlacedFile::reserve() {
-  struct stat now {};
-  if (::fstat(file_.get(), &now) != 0) throw_write(path_, "written");
-  if (now.st_size == 0) return;
+void PlacedFile::reserve(std::uint64_t length) {
+  const auto n = static_cast<off_t>(length);
+  if (::ftruncate(file_.get(), n) != 0) throw_write(path_, "written");
+  if (n == 0) return;
   int result = 0;
   do {
-    result = ::fallocate(file_.get(), 0, 0, now.st_size);
+    result = ::fallocate(file_.get(), 0, 0, n);
   } while (result != 0 && errno == EINTR);
   if (result != 0 && errno != EOPNOTSUPP && errno != ENOSYS) throw_write(path_, "written");
 }

@@ -64,12 +64,12 @@ class OutputFile {
   std::uint64_t length_ = 0;
 };
 
-/// A file that is there, written to at any place within its length, by several processes at a time.
+/// A file that is there, written to at any place, by several processes at a time.
 class PlacedFile {
  public:
   explicit PlacedFile(const std::filesystem::path& path);
-  /// Takes space on the device for all of its length, as far as the file system can.
-  void reserve();
+  /// Makes it so long, and takes space on the device for all of it, as far as the file system can.
+  void reserve(std::uint64_t length);
   void write_at(std::uint64_t place, std::span<const std::byte> bytes);
   /// Returns when all is on the device.
   void sync();

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,9 +14,8 @@
 
 #include "results/contents.hpp"
 
-/// The little of HDF5 that the results need. Every function that writes throws WriteError, every one that
-/// reads UserError, naming the file, where HDF5 fails; HDF5's own error print is silenced. Objects are named
-/// by their path in the file, e.g.
+/// The little of HDF5 that the results need. Every function throws WriteError, naming the file, where HDF5
+/// fails; HDF5's own error print is silenced. Objects are named by their path in the file, e.g.
 /// "/VTKHDF/Points".
 namespace slipfront::results::hdf5 {
 
@@ -47,19 +47,16 @@ class Handle {
 };
 
 struct File {
-  std::filesystem::path path;  ///< for messages
+  std::filesystem::path name;  ///< for messages
   Handle handle;
 };
 
-/// Silences HDF5 in the calling thread; creating and opening files does it as well.
-void silence();
-
-/// Creates a file, replacing one that is there. HDF5 1.10 and later read it.
-File create_file(const std::filesystem::path& path);
-/// Files in formats before that of create_file are refused.
-File open_file(const std::filesystem::path& path);
-
-/// Writes out what HDF5 still holds back and closes; without it a full disk would go unnoticed.
+/// Makes an HDF5 file of a file that is there. HDF5 1.10 and later read it.
+File create_file(const std::filesystem::path& path, const std::filesystem::path& name);
+/// Opens one to `reserve`.
+/// @param alignment  what gets a place lies at a multiple of it
+File open_file(const std::filesystem::path& path, const std::filesystem::path& name, hsize_t alignment = 1);
+/// Writes out what HDF5 still holds back and closes.
 void close(File file);
 
 void create_group(const File& file, const std::string& name);
@@ -70,28 +67,33 @@ using Shape = std::vector<hsize_t>;
 void write(const File& file, const std::string& name, std::span<const double> values, const Shape& shape);
 void write(const File& file, const std::string& name, std::span<const std::int64_t> values,
            const Shape& shape);
+/// Writes texts, each filled up to the longest one by zeros.
+void write_texts(const File& file, const std::string& name, const std::vector<std::string>& texts);
 
-/// Makes a data set whose numbers others write: its place in the file is taken, and nothing is put there.
+/// Makes a data set whose numbers others write. It has no place in the file before it is reserved.
 enum class Type { float64, int64, uint8 };
 void create(const File& file, const std::string& name, Type type, const Shape& shape);
-/// Where such a data set lies in its file, row after row in the order of memory.
+/// Where such a data set lies in its file, row after row in the order of memory; an empty one has no place.
 struct Place {
   std::uint64_t offset = 0, row_bytes = 0;
   std::uint64_t n_rows = 0;
 };
-Place place_of(const File& file, const std::string& name);
-enum class Chunks {
-  any,
-  checked,  ///< each with a checksum of its numbers, compared when it is read; for those written at once
+/// Gives it a place at the file's end.
+Place reserve(const File& file, const std::string& name);
+
+/// A data set of doubles, [n, values].
+struct Rows {
+  std::string name;
+  hsize_t n = 0, values = 0;
 };
-/// Makes a data set of doubles without rows that add_rows lengthens, stored in chunks of `chunk_rows` rows.
-/// @param row  the lengths after the first
-void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
-                    Chunks chunks = Chunks::any);
-/// Writes values.size() / (product of the other lengths) rows from `first_row` on.
-void write_rows(const File& file, const std::string& name, hsize_t first_row, std::span<const double> values);
-/// Lengthens a data set by `rows` rows, for write_rows.
-void add_rows(const File& file, const std::string& name, hsize_t rows);
+/// Values [first, first + n) of each row, row after row: a column of a view, or all of it.
+struct Part {
+  hsize_t first = 0, n = 1;
+  std::optional<hsize_t> column = {};
+};
+/// Makes a data set of doubles that shows numbers of another one; what no part fills is 0.
+void create_view(const File& file, const std::string& name, const Shape& shape, const Rows& rows,
+                 const std::vector<Part>& parts);
 
 /// Sets an attribute of a group or data set: text, fixed-length ASCII text (VTKHDF asks for it), integers.
 void set_attribute(const File& file, const std::string& object, const std::string& name,
@@ -104,36 +106,5 @@ void set_attribute(const File& file, const std::string& object, const std::strin
 /// Sets the attributes `program`, `version` and `units` of the root and, unless they are empty, `title` and
 /// `case`.
 void describe_root(const File& file, const Origin& origin);
-/// Looks for them in a file that was written just now.
-void require_root_described(const File& file, const Origin& origin);
-
-/// Writes texts, each filled up to the longest one by zeros.
-void write_texts(const File& file, const std::string& name, const std::vector<std::string>& texts);
-/// Compares them. @throws WriteError
-void require_texts(const File& file, const std::string& name, const std::vector<std::string>& texts);
-
-/// Text attribute of variable length, of a file that is known to be whole: HDF5 keeps these texts in a heap
-/// without checksums, and does not come back from some damage of it.
-std::string text_attribute(const File& file, const std::string& object, const std::string& name);
-
-struct Array {
-  Shape shape;
-  std::vector<double> values;  ///< row-major
-};
-/// Reads a data set of any numeric type.
-Array read(const File& file, const std::string& name);
-/// Reads rows [first_row, first_row + n_rows) of one, and tells the shape of all of it.
-Array read_rows(const File& file, const std::string& name, hsize_t first_row, hsize_t n_rows);
-Shape shape_of(const File& file, const std::string& name);
-
-// For files that were written just now. @throws WriteError where the first length, an attribute or the rows
-// from first_row on, to the last bit, are others.
-File open_written_file(const std::filesystem::path& path);
-void require_length(const File& file, const std::string& name, hsize_t n_rows);
-/// The text is looked for in the file's bytes, see text_attribute.
-void require_text(const File& file, const std::string& object, const std::string& name,
-                  const std::string& text);
-void require_rows(const File& file, const std::string& name, hsize_t first_row,
-                  std::span<const double> values);
 
 }  // namespace slipfront::results::hdf5

@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/slabs.hpp"
-#include "motion/event.hpp"
+#include "motion/time_stepper.hpp"
 #include "results/contents.hpp"
 
 namespace slipfront::results {
 
-/// Snapshots of which not all need be held at a time.
-struct SnapshotSeries {
-  std::vector<double> time_s;
-  /// Of snapshot k the values at n nodes from `first` on.
-  std::function<solid::Field(std::size_t k, std::size_t first, std::size_t n)> u_m, v_m_per_s;
+/// Rows of a fields.vtkhdf (rows.hpp): the time, u_x, u_y, v_x and v_y [nodes].
+struct SnapshotRows {
+  std::uint64_t head_bytes = 0;
+  std::size_t n_nodes = 0;
+  /// Nodes of the left edge of a periodic plate, and of the right one, which are given their motion.
+  std::vector<std::pair<std::size_t, std::size_t>> seam = {};
+
+  std::size_t row_values() const { return 1 + motion::n_motion_components * n_nodes; }
+  /// With room for so many snapshots.
+  static std::uint64_t head_bytes_of(const Origin& origin, std::size_t n_snapshots);
 };
-/// @param snapshots  must last as long
-SnapshotSeries series_of(std::span<const motion::Snapshot> snapshots);
+/// The pairs of a mesh whose nodes are numbered from `first` on.
+std::vector<std::pair<std::size_t, std::size_t>> seam(const mesh::Mesh& mesh, std::size_t first = 0);
 
 /// One of the ranks that fill a file together: `count` of them each some slabs of its mesh. What one has
 /// filled another one compares.
@@ -31,18 +38,15 @@ struct Writer {
   bool leads() const { return number == 0; }
 };
 
-/// Writes a fields.vtkhdf and compares it with what it should hold: VTKHDF (version 2.0) unstructured grid,
-/// mesh written once, a step per snapshot, point data `displacement_m` and `velocity_m_per_s`, and where they
-/// are asked for the cell data `strain_xx` ... and `stress_xx_Pa` ..., values at the cell's centre; strain_zz
-/// in plane stress, stress_zz_Pa in plane strain, where the other one is 0. Data sets have the attributes
-/// `unit` and `description`. ParaView 5.12 and h5py read it. Without snapshots: the mesh alone. A slab of the
-/// mesh is held at a time, and a field over it.
-///
-/// The first writer makes the file with the places of all numbers, so that its bytes do not depend on the
-/// number of writers; each of them puts its own ones there, without HDF5.
-/// @throws WriteError, and what the series and `together` throw
-void write_snapshots(const std::filesystem::path& file, const mesh::Slabs& mesh, const SnapshotSeries& series,
-                     const SnapshotContents& contents = {}, const Writer& writer = {});
+/// Finishes a fields.vtkhdf whose rows are there, and compares what is put over and behind them: VTKHDF
+/// (version 2.0) unstructured grid, mesh written once, a step per snapshot, point data `displacement_m` and
+/// `velocity_m_per_s`, and where they are asked for the cell data `strain_xx` ... and `stress_xx_Pa` ...,
+/// values at the cell's centre; strain_zz in plane stress, stress_zz_Pa in plane strain, where the other one
+/// is 0. Data sets have the attributes `unit` and `description`. ParaView 5.12 and h5py read it. A slab of
+/// the mesh is held at a time, and a field over it. The bytes do not depend on the number of writers.
+/// @throws WriteError, and what `together` throws
+void finish_snapshots(const std::filesystem::path& file, const mesh::Slabs& mesh,
+                      const SnapshotContents& contents = {}, const Writer& writer = {});
 
 /// Numbers of strain and stress to a cell and snapshot.
 inline constexpr int tensor_values_per_cell = 7;

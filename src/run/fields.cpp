@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <exception>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <random>
-#include <span>
 #include <system_error>
 #include <utility>
 
@@ -24,28 +22,12 @@ namespace {
 
 /// What all ranks have to know.
 struct Order {
-  std::filesystem::path file, raw;
-  std::uint64_t raw_bytes = 0, n_snapshots = 0;
-  std::filesystem::path sign;  ///< a file, and beside it others with the numbers of ranks
-  std::string sign_text;
-  mesh::Grid plate;
-  std::optional<mesh::Grid> base;
-
-  void put(MessageBuffer& to) const {
-    for (const auto& path : {file, raw, sign}) to.put(path.string());
-    to.put(raw_bytes).put(n_snapshots).put(sign_text).put(plate);
-    to.put(static_cast<std::uint8_t>(base.has_value()));
-    if (base) to.put(*base);
-  }
-  static Order take(MessageBuffer& from) {
-    Order order;
-    for (auto* path : {&order.file, &order.raw, &order.sign}) *path = from.take_text();
-    order.raw_bytes = from.take<std::uint64_t>();
-    order.n_snapshots = from.take<std::uint64_t>();
-    order.sign_text = from.take_text();
-    order.plate = from.take<mesh::Grid>();
-    if (from.take<std::uint8_t>() != 0) order.base = from.take<mesh::Grid>();
-    return order;
+  std::string file;  ///< empty where there are no snapshots
+  std::uint64_t bytes = 0;
+  std::string sign, sign_text;  ///< a file, and beside it others with the numbers of ranks
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(file, bytes, sign, sign_text);
   }
 };
 
@@ -58,7 +40,7 @@ std::string unique_text() {
 }
 
 std::filesystem::path sign_of(const Order& order, int rank) {
-  return order.sign.string() + "." + std::to_string(rank);
+  return order.sign + "." + std::to_string(rank);
 }
 
 bool holds_sign(const std::filesystem::path& file, const Order& order) {
@@ -69,8 +51,7 @@ bool holds_sign(const std::filesystem::path& file, const Order& order) {
 /// Whether this rank sees the files of rank 0, and leaves a sign for it.
 bool answers_sign(const Order& order, int rank) {
   std::error_code error;
-  if (!holds_sign(order.sign, order) || std::filesystem::file_size(order.raw, error) != order.raw_bytes ||
-      error)
+  if (!holds_sign(order.sign, order) || std::filesystem::file_size(order.file, error) != order.bytes || error)
     return false;
   try {
     files::write_text(sign_of(order, rank), order.sign_text);
@@ -83,15 +64,9 @@ bool answers_sign(const Order& order, int rank) {
 void write(const Order& order, const input::Case& config, const std::function<SnapshotMesh()>& make_mesh,
            results::Writer writer) {
   std::optional<SnapshotMesh> mesh;
-  results::SnapshotSeries series;
-  writer.together([&] {
-    mesh = make_mesh();
-    series = results::read_snapshots(order.raw, mesh->slabs.n_nodes);
-    if (series.time_s.size() != order.n_snapshots)
-      throw WriteError("{}: is not what was written: it was changed meanwhile", order.raw.string());
-  });
+  writer.together([&] { mesh = make_mesh(); });
   writer.count = std::min(writer.count, static_cast<int>(mesh->slabs.n_slabs));
-  results::write_snapshots(order.file, mesh->slabs, series, snapshot_contents(config, *mesh), writer);
+  results::finish_snapshots(order.file, mesh->slabs, snapshot_contents(config, *mesh), writer);
 }
 
 /// Whether all ranks see the files of rank 0, and it sees theirs.
@@ -104,56 +79,41 @@ bool all_see(const Order& order, Processes& processes) {
   return processes.broadcast(std::move(MessageBuffer().put(all_see))).take<bool>();
 }
 
-Order order_of(const results::ResultFolder& folder, const InitialState& bodies) {
-  Order order;
-  order.file = std::filesystem::absolute(folder.unfinished() / "fields.vtkhdf");
-  order.raw = std::filesystem::absolute(results::ResultStream::snapshot_file(folder.state()));
-  order.sign = std::filesystem::absolute(folder.state() / "seen-by-all");
-  order.sign_text = unique_text();
-  order.plate = bodies.mesh.grid;
-  if (bodies.base) order.base = bodies.base->grid;
-  order.n_snapshots =
-      results::read_snapshots(order.raw, static_cast<std::size_t>(bodies.n_nodes)).time_s.size();
-  order.raw_bytes = std::filesystem::file_size(order.raw);
-  return order;
+Order order_of(const results::ResultFolder& folder) {
+  const auto file = std::filesystem::absolute(folder.unfinished() / results::snapshot_file);
+  if (!files::is_there(file)) return {};
+  return {file, std::filesystem::file_size(file), std::filesystem::absolute(folder.state() / "seen-by-all"),
+          unique_text()};
 }
 
 }  // namespace
 
-void write_fields(const results::ResultFolder* folder, const input::Case& config, const InitialState& bodies,
-                  Processes& processes, const std::function<void(const std::string&)>& note) {
-  const bool is_in_rows = input::has_equal_elements(config);
-  const auto write_alone = [&](const Order& order) {
-    if (order.n_snapshots == 0) return;
-    const auto make_mesh = [&] {
-      return is_in_rows ? snapshot_mesh_in_rows(config, order.plate, order.base)
-                        : whole_snapshot_mesh(check(config, processes));
-    };
-    write(order, config, make_mesh, {});
-  };
-  if (processes.size() == 1) return write_alone(order_of(*folder, bodies));
+void write_fields(const results::ResultFolder* folder, const input::Case& config, Processes& processes,
+                  const std::function<void(const std::string&)>& note) {
+  const bool is_in_rows = input::has_equal_elements(config), are_several = processes.size() > 1;
   auto told = processes.from_root([&](MessageBuffer& to) {
-    const auto order = order_of(*folder, bodies);
-    files::write_text(order.sign, order.sign_text);
-    order.put(to);
+    const auto order = order_of(*folder);
+    if (are_several && !order.file.empty()) files::write_text(order.sign, order.sign_text);
+    to.append(packed(order));
   });
-  const auto order = Order::take(told);
-  if (is_in_rows && order.n_snapshots > 0 && all_see(order, processes)) {
-    const auto make_mesh = [&] {
-      return snapshot_mesh_in_rows(config, order.plate, order.base, processes.size());
-    };
+  const auto order = unpacked<Order>(told);
+  if (order.file.empty()) return;
+  if (is_in_rows && are_several && all_see(order, processes)) {
     try {
-      return write(order, config, make_mesh,
+      return write(order, config, [&] { return snapshot_mesh_in_rows(config, processes.size()); },
                    {processes.rank(), processes.size(), [&](const auto& work) { processes.together(work); }});
     } catch (const ProcessError& error) {
       throw WriteError("{}", error.what());
     }
   }
   processes.from_root([&](MessageBuffer&) {
-    if (is_in_rows && order.n_snapshots > 0)
+    if (is_in_rows && are_several)
       note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",
-                       order.file.filename().string(), folder->dir().string()));
-    write_alone(order);
+                       results::snapshot_file, folder->dir().string()));
+    const auto make_mesh = [&] {
+      return is_in_rows ? snapshot_mesh_in_rows(config) : whole_snapshot_mesh(check(config, processes));
+    };
+    write(order, config, make_mesh, {});
   });
 }
 

@@ -8,16 +8,14 @@
 #include "input/case.hpp"
 #include "processes/processes.hpp"
 #include "results/folder.hpp"
-#include "run/initial_state.hpp"
 
 namespace slipfront::run {
 
-/// Makes fields.vtkhdf of a run's snapshots, which its stream has written. Where the mesh can be made in rows
-/// and all ranks see the folder, each writes some of them. Collective.
-/// @param folder, bodies, note  on rank 0: of the run; of its meshes the grids are looked at; receives the
-///                              reason why the others do not help
+/// Finishes the fields.vtkhdf of a run with snapshots, which its stream has written. Where the mesh can be
+/// made in rows and all ranks see the folder, each writes some of them. Collective.
+/// @param folder, note  on rank 0: of the run; receives the reason why the others do not help
 /// @throws WriteError; FailedElsewhere on the ranks that have not failed
-void write_fields(const results::ResultFolder* folder, const input::Case& config, const InitialState& bodies,
-                  Processes& processes, const std::function<void(const std::string&)>& note);
+void write_fields(const results::ResultFolder* folder, const input::Case& config, Processes& processes,
+                  const std::function<void(const std::string&)>& note);
 
 }  // namespace slipfront::run

@@ -50,12 +50,12 @@ constexpr double mesh_of_root = 32;
 /// Of a cell of a relief, for a rank 0 that has no more of the bodies than these and the interface.
 constexpr double in_relief = 1600;
 
-// Bytes on disk of a node. Raw rows and fields lie there until the results are made of them.
-constexpr double of_snapshot_mesh = 65;      ///< place, cell
-constexpr double raw_and_written = 32 + 48;  ///< u and v, raw; the same with z
-constexpr double in_checkpoint = 33;         ///< u and what moves it, 32
-constexpr double checkpoints = 3;            ///< two, and one that is written
-constexpr double in_text = 20;               ///< of a number
+// Bytes on disk of a node.
+constexpr double of_snapshot_mesh = 65;  ///< place, cell
+constexpr double in_snapshot = 32;       ///< u and v
+constexpr double in_checkpoint = 33;     ///< u and what moves it, 32
+constexpr double checkpoints = 3;        ///< two, and one that is written
+constexpr double in_text = 20;           ///< of a number
 
 // Seconds, of a processor of 2023 with two threads, measured over 2e4 to 5e7 unknowns.
 constexpr double s_of_large_fronts = 1.6e-9;  ///< times n^1.5
@@ -285,15 +285,15 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   n.statics_bytes = statics_bytes_of(config, size, holder);
 
   n.history_bytes =
-      2 * n.history_rows * number *
+      n.history_rows * number *
       static_cast<double>(record::history_row_values(static_cast<std::size_t>(size.n_interface)));
   const double of_stress = output.snapshot_stress ? results::tensor_values_per_cell * number : 0;
   if (n.snapshots > 0)
-    n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (raw_and_written + of_stress));
+    n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (in_snapshot + of_stress));
   const double in_one = is_plain(config) ? in_plain_checkpoint : in_checkpoint;
   n.checkpoint_bytes = checkpoints * (in_one * size.n_nodes + record_bytes(config, size.n_interface));
   if (const auto n_probes = config.probes.x_m.size(); n_probes > 0)
-    n.probe_bytes = 2 * rows_of(end_s, config.probes.interval_s, size.step_s) * number *
+    n.probe_bytes = rows_of(end_s, config.probes.interval_s, size.step_s) * number *
                     static_cast<double>(record::probe_row_values(n_probes));
   n.energy_bytes = energy_rows * in_text * sizeof(record::Energies) / number;
   return n;

@@ -37,7 +37,7 @@ struct Needs {
   double history_rows = 0, snapshots = 0;
   Budget memory;             ///< of the statics or of the event, whichever takes more
   double statics_bytes = 0;  ///< of memory, while the statics are solved
-  /// On disk, with what lies there beside the results until they are made.
+  /// On disk, with what lies there beside the results.
   double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, probe_bytes = 0, energy_bytes = 0;
 
   double memory_bytes() const { return total_bytes(memory); }

@@ -22,6 +22,10 @@
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
+namespace slipfront::results {
+struct RunFiles;
+}
+
 namespace slipfront::run {
 
 /// Wave speeds in the plane chosen, m/s.
@@ -114,9 +118,9 @@ inline constexpr const char* friction_file = "friction.csv";
 
 /// The case as case.resolved.toml has it: its tables lie beside it.
 std::string resolved_text(const input::Case& config);
-/// What a run's HDF5 files say of where they come from.
-results::Origin origin_of(const input::Case& config);
-/// What a case's fields.vtkhdf holds.
+/// What the files of its rows hold. @param step_s  of its event
+results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s);
+/// What a case's fields.vtkhdf holds besides.
 results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh);
 
 /// Writes them all.

@@ -204,13 +204,9 @@ void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
       ramp_ = nullptr;
       stepper_ = nullptr;
       if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
-      for (const auto& file : {results::ResultStream::history_file(folder_->state()),
-                               results::ResultStream::snapshot_file(folder_->state()),
-                               results::ResultStream::probe_file(folder_->state())})
-        files::remove_file(file);
-      stream_.emplace(folder_->state(), !config_.probes.x_m.empty());
     });
     event_stepper_ = start_event(config_, initial_, event_execution(), processes_);
+    at_root([&] { stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s())); });
     emplace_event();
   }
   stepper_ = event_stepper_.get();
@@ -230,7 +226,7 @@ void Session::restore_event(Checkpoints::Checkpoint* kept) {
   with_file([&] {
     results::ResultStream::Extents extents;
     kept->rest(extents);
-    stream_.emplace(folder_->state(), extents, !config_.probes.x_m.empty());
+    stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s()), extents);
   });
   emplace_event();
   auto of_event = processes_.from_root([&](MessageBuffer& to) {
@@ -326,14 +322,11 @@ Finished Session::finish(motion::Event event) {
   event_stepper_.reset();
   run.initial = std::move(initial_);
   at_root([&] {
-    const auto extents = stream_->keep();
-    stream_.reset();
-    results::ResultStream::require_unchanged(folder_->state(), extents);
     measure(run.result, run.initial);
     write_results(run);
   });
   if (!snapshot_plan(config_, run.result.step_s).times_s.empty())
-    write_fields(folder_, config_, run.initial, processes_, hooks_.note);
+    write_fields(folder_, config_, processes_, hooks_.note);
   at_root([&] {
     if (status_of(run.result).name == "complete") folder_->publish();
   });
@@ -348,11 +341,8 @@ void Session::write_results(const Finished& run) {
   write_static(dir_, config_, run.initial);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
-  results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_->state()),
-                         run.initial.common.tractions.x_m, origin_of(config_));
-  if (const auto places = input::probe_places(config_); !places.empty())
-    results::write_probes(dir_ / "probes.h5", results::ResultStream::probe_file(folder_->state()), places,
-                          origin_of(config_));
+  stream_->finish();
+  stream_.reset();
 }
 
 /// The first line in which two texts differ, for a message; of `text`.
@@ -422,8 +412,6 @@ Finished resume(results::ResultFolder& folder, const input::Case* expected, cons
                       config.friction_along_x.file);
   }
   files::write_text(file, text);  // as it was, however it was written meanwhile
-  for (const char* name : {"interface.h5", "fields.vtkhdf", "probes.h5"})
-    files::remove_file(folder.unfinished() / name);
   return run_shared(folder, config, options, hooks, true, std::move(kept));
 }
 
@@ -474,7 +462,7 @@ void require_same_case(const input::Case& wanted, const std::filesystem::path& d
 
 bool is_complete(const std::filesystem::path& dir) {
   return files::is_there(dir / files::checksum_list) && files::is_there(dir / "run.json") &&
-         files::is_there(dir / "interface.h5");
+         files::is_there(dir / results::history_file);
 }
 
 }  // namespace slipfront::run

@@ -51,7 +51,8 @@ struct RowsOfBody {
   std::size_t n_slabs() const { return static_cast<std::size_t>((rows + at_once - 1) / at_once); }
 };
 
-RowsOfBody rows_of(const mesh::Plate& plate, const mesh::Grid& grid, bool is_below, int n_writers) {
+RowsOfBody rows_of(const mesh::Plate& plate, bool is_below, int n_writers) {
+  const auto grid = mesh::make_interface(plate).grid;
   const auto nodes_per_row = static_cast<std::size_t>(grid.stride());
   const auto few = static_cast<int>(snapshot_nodes_at_once / nodes_per_row);
   const int at_once = std::max(1, std::min(few, (grid.rows + n_writers - 1) / n_writers));
@@ -90,20 +91,13 @@ mesh::Slabs in_rows(std::vector<RowsOfBody> bodies) {
   return slabs;
 }
 
-std::size_t n_squares(const mesh::Grid& grid) {
-  return static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
-}
-
 }  // namespace
 
-SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, const mesh::Grid& plate,
-                                   const std::optional<mesh::Grid>& base, int n_writers) {
-  std::vector<RowsOfBody> bodies = {rows_of(config.plate, plate, false, n_writers)};
-  if (base) bodies.push_back(rows_of(input::base_plate(config), *base, true, n_writers));
-  SnapshotMesh mesh;
-  mesh.slabs = in_rows(std::move(bodies));
-  mesh.n_plate_cells = n_squares(plate);
-  return mesh;
+SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, int n_writers) {
+  std::vector<RowsOfBody> bodies = {rows_of(config.plate, false, n_writers)};
+  if (input::has_base_body(config)) bodies.push_back(rows_of(input::base_plate(config), true, n_writers));
+  const auto n_plate_cells = bodies.front().n_cells();
+  return {in_rows(std::move(bodies)), n_plate_cells};
 }
 
 SnapshotMesh whole_snapshot_mesh(Meshes meshes) {

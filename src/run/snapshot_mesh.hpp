@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "input/case.hpp"
 #include "mesh/slabs.hpp"
@@ -20,10 +19,9 @@ struct SnapshotMesh {
   std::size_t n_plate_cells = 0;
 };
 
-/// The mesh, some rows at a time. @param plate, base  the grids of the bodies
+/// The mesh, some rows at a time.
 /// @param n_writers  each of which may have a slab at least, as far as there are rows enough
-SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, const mesh::Grid& plate,
-                                   const std::optional<mesh::Grid>& base, int n_writers = 1);
+SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, int n_writers = 1);
 
 /// The mesh in one slab.
 SnapshotMesh whole_snapshot_mesh(Meshes meshes);

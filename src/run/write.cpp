@@ -11,10 +11,8 @@
 #include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
 #include "results/folder.hpp"
-#include "results/history.hpp"
-#include "results/probes.hpp"
 #include "results/results.hpp"
-#include "results/snapshots.hpp"
+#include "results/stream.hpp"
 #include "run/run.hpp"
 #include "run/snapshot_mesh.hpp"
 #include "run/snapshot_plan.hpp"
@@ -269,8 +267,24 @@ std::string resolved_text(const input::Case& config) {
   return input::to_toml(resolved);
 }
 
-results::Origin origin_of(const input::Case& config) {
+/// What a run's HDF5 files say of where they come from.
+static results::Origin origin_of(const input::Case& config) {
   return {config.title, resolved_text(config)};
+}
+
+results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s) {
+  const auto origin = origin_of(config);
+  const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
+  results::RunFiles files{results::history_table(initial.common.tractions.x_m, origin),
+                          {results::SnapshotRows::head_bytes_of(origin, n_snapshots),
+                           static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
+  if (initial.base) {
+    const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));
+    files.snapshots.seam.insert(files.snapshots.seam.end(), below.begin(), below.end());
+  }
+  if (const auto places = input::probe_places(config); !places.empty())
+    files.probes = results::probe_table(places, origin);
+  return files;
 }
 
 results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh) {
@@ -318,14 +332,16 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   const auto& event = result.event;
   write_case(dir, result.config);
   write_static(dir, result.config, initial);
-  results::write_history(dir / "interface.h5", event.history, origin_of(result.config));
+  results::ResultStream stream(dir, run_files(result.config, initial, result.step_s));
+  stream.sample(event.history);
+  if (!event.probes.time_s.empty()) stream.probe(event.probes);
+  for (const auto& snapshot : event.snapshots) stream.snapshot(snapshot);
+  stream.finish();
   if (!event.snapshots.empty()) {
     const auto mesh = whole_snapshot_mesh({initial.mesh, initial.base});
-    results::write_snapshots(dir / "fields.vtkhdf", mesh.slabs, results::series_of(event.snapshots),
-                             snapshot_contents(result.config, mesh));
+    results::finish_snapshots(dir / results::snapshot_file, mesh.slabs,
+                              snapshot_contents(result.config, mesh));
   }
-  if (const auto places = input::probe_places(result.config); !places.empty())
-    results::write_probes(dir / "probes.h5", places, event.probes, origin_of(result.config));
   write_so_far(dir, result, event.energies, initial, status_of(result));
   results::seal(dir);
 }

@@ -46,8 +46,8 @@ def test_a_plate_that_no_process_holds_is_foretold(program, coarse):
     assert printed["nodes"] == f"{n_nodes} (141422 on the interface)"
     assert printed["cells"] == str(141421 * 70710)
     snapshot_gb = float(re.search(r"1 snapshots ([\d.e+]+)", printed["disk"])[1])
-    # Places and cells, raw displacements and velocities and those of the file, strain and stress.
-    assert snapshot_gb == pytest.approx(n_nodes * (24 + 41 + 32 + 48 + 56) * 1e-9, rel=0.3)
+    # Places and cells, displacements and velocities, strain and stress.
+    assert snapshot_gb == pytest.approx(n_nodes * (24 + 41 + 32 + 56) * 1e-9, rel=0.3)
 
 
 def random_case(seed):

@@ -2,6 +2,7 @@
 """Unfinished runs that somebody damages, and then goes on with: refused in one line, or the same results."""
 
 import hashlib
+import io
 import math
 import os
 import random
@@ -9,6 +10,7 @@ import shutil
 import signal
 import struct
 
+import h5py
 from common import finished, one_line, require_done, wait_until_or_over
 
 from .cases import long
@@ -89,7 +91,7 @@ class Setting:
 
 def damages(dice, other):
     """Name, what is done to (unfinished, state, checkpoints), and the exit codes that are right."""
-    raw = ("history.raw", "snapshots.raw")
+    rows = ("interface.h5", "fields.vtkhdf")
 
     def both(edit):
         return lambda u, s, c: [change(path, edit) for path in c]
@@ -113,15 +115,17 @@ def damages(dice, other):
     for k in range(12):
         yield f"byte of the last checkpoint {k}", lambda u, s, c: change(c[-1], flip(dice)), {0}
         yield f"cut last checkpoint {k}", lambda u, s, c: change(c[-1], cut(dice)), {0}
-    for name in raw:
-        # Behind what a checkpoint counts on, anything may be there; before, all must be as it was.
+    for name in rows:
+        # The head is written anew, and behind what a checkpoint counts on anything may be there; between them
+        # all must be as it was.
         for k in range(6):
-            yield f"byte of {name} {k}", state_file(name, flip(dice)), {0, 2}
-            yield f"cut {name} {k}", state_file(name, cut(dice)), {0, 2}
-        yield f"first byte of {name}", state_file(name, lambda data: b"x" + data[1:]), {2}
-        yield f"empty {name}", state_file(name, lambda data: b""), {2}
-        yield f"no {name}", lambda u, s, c, name=name: (s / name).unlink(), {2}
-        yield f"longer {name}", state_file(name, lambda data: data + b"more"), {0}
+            yield f"byte of {name} {k}", result_file(name, flip(dice)), {0, 2}
+            yield f"cut {name} {k}", result_file(name, cut(dice)), {0, 2}
+        yield f"first byte of {name}", result_file(name, lambda data: b"x" + data[1:]), {0}
+        yield f"first row of {name}", result_file(name, first_row_changed), {2}
+        yield f"empty {name}", result_file(name, lambda data: b""), {2}
+        yield f"no {name}", lambda u, s, c, name=name: (u / name).unlink(), {2}
+        yield f"longer {name}", result_file(name, lambda data: data + b"more"), {0}
     yield "bytes of both checkpoints", both(flip(dice)), {0}
     yield "empty checkpoints", both(lambda data: b""), {0}
     yield "bytes behind a checkpoint", lambda u, s, c: change(c[-1], lambda data: data + b"x"), {0}
@@ -226,30 +230,48 @@ def changed_table(bench, name, text, changed):
     require_same(alone(folder), expected, "other results")
 
 
+def first_row_at(file):
+    """Of a file that is finished or not."""
+    first = int.from_bytes(file.read(8), "little")
+    if first % 4096:
+        with h5py.File(file, "r") as hdf5:
+            return hdf5["rows"].id.get_offset()
+    return first
+
+
+def has_row(path):
+    with open(path, "rb") as file:
+        return path.stat().st_size >= first_row_at(file) + 16
+
+
+def first_row_changed(data):
+    first = first_row_at(io.BytesIO(data))
+    return data[:first] + b"12345678" + data[first + 8 :]
+
+
 def meddlings():
     """Name, what is done to (unfinished, state) of a run that goes on, and the exit code: what is on its way
     to the results is compared, what is small is written anew."""
-    for name in ("history.raw", "snapshots.raw"):
+    for name in ("interface.h5", "fields.vtkhdf"):
 
         def change_first(u, s, name=name):
-            with open(s / name, "r+b") as file:
-                file.seek(8)
+            with open(u / name, "r+b") as file:
+                file.seek(first_row_at(file))
                 file.write(b"12345678")
 
         yield f"changed {name}", change_first, 1
-        yield f"cut {name}", lambda u, s, name=name: os.truncate(s / name, 4), 1
-        yield f"removed {name}", lambda u, s, name=name: (s / name).unlink(), 1
+        yield f"cut {name}", lambda u, s, name=name: os.truncate(u / name, 4), 1
+        yield f"removed {name}", lambda u, s, name=name: (u / name).unlink(), 1
     for name in ("case.resolved.toml", "static.csv", "energy.csv", "fronts.csv", "run.json"):
         yield f"changed {name}", lambda u, s, name=name: (u / name).write_text("mine\n"), 0
         yield f"removed {name}", lambda u, s, name=name: (u / name).unlink(), 0
-    yield "a file of its own", lambda u, s: (u / "interface.h5").write_text("mine\n"), 0
 
 
 def is_under_way(folder):
     """Rows of both records are there."""
-    raw = [folder / f"unfinished/state/{name}.raw" for name in ("history", "snapshots")]
+    rows = [folder / "unfinished" / name for name in ("interface.h5", "fields.vtkhdf")]
     begun = (folder / "unfinished/fronts.csv").exists()
-    return begun and all(path.exists() and path.stat().st_size >= 16 for path in raw)
+    return begun and all(path.exists() and has_row(path) for path in rows)
 
 
 def meddle(setting, how, may_be):

@@ -131,7 +131,7 @@ def run_over_work_setting(bench):
     case, state = bench.case(long("triggered")), old_folder / "unfinished/state"
     for _ in range(TRIES):
         process = bench.start("run", case, "-o", old_folder, "-q", "--overwrite")
-        wait_until_or_over((state / "history.raw").exists, process)
+        wait_until_or_over((old_folder / "unfinished/interface.h5").exists, process)
         process.terminate()
         finished(process)
         if (state / "checkpoint-000001.bin").exists():

@@ -47,9 +47,7 @@ def while_one_runs(setting):
     """Every command that would write there is refused while a run goes on."""
     bench = setting.bench
     case = bench.case(long("triggered"))
-    process, folder = stopped_under_way(
-        bench, case, lambda out: (out / "unfinished/state/history.raw").exists()
-    )
+    process, folder = stopped_under_way(bench, case, lambda out: (out / "unfinished/interface.h5").exists())
     try:
         for command in (
             ("run", case, "-o", folder, "--overwrite"),
@@ -284,7 +282,7 @@ def foreign_trials(bench, every=1):
 
 
 def signal_trials(bench, names=STOPPING, kinds=("ramp", "triggered")):
-    parts = {"ramp": "unfinished/run.json", "triggered": "unfinished/state/history.raw"}
+    parts = {"ramp": "unfinished/run.json", "triggered": "unfinished/interface.h5"}
     for kind in kinds:
         run = Long(bench, kind)
         for name in names:

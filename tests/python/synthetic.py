@@ -338,6 +338,9 @@ def write_output(
 
 # The layout with checksums and unfinished runs
 
+# Of a file of rows that is not finished: its length, as far as a whole block.
+OPEN_HEAD = (4096).to_bytes(8, "little").ljust(4096, b"\0")
+
 
 def write_checksums(folder: Path, leave_out: tuple[str, ...] = ()) -> Path:
     """checksums.sha256 over the files of a folder, as sha256sum writes it."""
@@ -365,13 +368,12 @@ def set_status(folder: Path, status: str, reason: str) -> None:
     (folder / "run.json").write_text(json.dumps(info | {"status": status, "reason": reason}))
 
 
-def write_raw_history(folder: Path) -> None:
-    """history.raw with the rows of interface.h5."""
+def reopen_history(folder: Path) -> None:
+    """interface.h5 as it is while the run goes."""
     with h5py.File(folder / "interface.h5") as hdf5:
         columns = [hdf5[name][()] for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")]
         rows = np.concatenate([hdf5["time_s"][()][:, None], *columns], axis=1)
-    (folder / "state").mkdir(exist_ok=True)
-    (folder / "state/history.raw").write_bytes(rows.astype("<f8").tobytes())
+    (folder / "interface.h5").write_bytes(OPEN_HEAD + rows.astype("<f8").tobytes())
 
 
 def interrupt(run: Path, status: str, reason: str = "") -> Path:
@@ -382,7 +384,6 @@ def interrupt(run: Path, status: str, reason: str = "") -> Path:
         file.rename(unfinished / file.name)
     set_status(unfinished, status, reason)
     if status in ("running", "failed"):
-        write_raw_history(unfinished)
-        for name in ("interface.h5", "fields.vtkhdf"):
-            (unfinished / name).unlink()
+        reopen_history(unfinished)
+        (unfinished / "fields.vtkhdf").write_bytes(OPEN_HEAD)
     return unfinished

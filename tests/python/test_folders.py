@@ -19,8 +19,10 @@ from slipfront.files import DataError
 from slipfront.read import read_run, verify_checksums
 from synthetic import (
     ENERGY_HEADER,
+    OPEN_HEAD,
     energy_rows,
     interrupt,
+    reopen_history,
     seal,
     set_status,
     write_checksums,
@@ -229,8 +231,8 @@ def test_last_rows_that_are_cut_off_are_passed_over(pristine, run):
     unfinished = interrupt(run, "running")
     with open(unfinished / "energy.csv", "a") as stream:
         stream.write("2.6e-4,380.0,1.")
-    raw = unfinished / "state/history.raw"
-    raw.write_bytes(raw.read_bytes()[:-8])
+    history = unfinished / "interface.h5"
+    history.write_bytes(history.read_bytes()[:-8])
     now = read_run(run)
     np.testing.assert_array_equal(now.balance.time_s, read_run(pristine / "left").balance.time_s)
     assert len(now.history.time_s) == 10
@@ -247,16 +249,21 @@ def test_a_run_that_has_only_begun(run):
     unfinished = interrupt(run, "running")
     (unfinished / "fronts.csv").unlink()
     assert read_run(run).fronts == []
-    (unfinished / "state/history.raw").write_bytes(b"")
-    with pytest.raises(DataError, match="history.raw: fewer than two times"):
+    (unfinished / "interface.h5").write_bytes(OPEN_HEAD)
+    with pytest.raises(DataError, match="interface.h5: fewer than two times"):
         read_run(run)
 
 
-def test_an_interrupted_run_prefers_its_finished_history(run):
-    unfinished = interrupt(run, "interrupted")
-    (unfinished / "state").mkdir(exist_ok=True)
-    (unfinished / "state/history.raw").write_bytes(b"left over")
-    assert len(read_run(run).history.time_s) == 11
+def test_a_run_that_was_killed_while_it_finished_its_files_is_read_by_their_rows(pristine, run):
+    unfinished = interrupt(run, "complete")
+    for name in ("interface.h5", "fields.vtkhdf"):
+        (unfinished / name).write_bytes(OPEN_HEAD)
+    whole = read_run(pristine / "left")
+    shutil.copy(pristine / "left/interface.h5", unfinished)
+    reopen_history(unfinished)
+    now = read_run(run)
+    np.testing.assert_array_equal(now.history.p_Pa, whole.history.p_Pa)
+    assert now.fields is None
 
 
 def test_a_blown_up_run_is_shown_as_far_as_it_has_numbers(run):

@@ -76,7 +76,7 @@ def test_what_is_no_file_is_refused_at_once(run, capsys, name, make, says):
 def test_what_is_no_hdf5_file_is_refused_at_once(run, make):
     make(run / "interface.h5")
     with pytest.raises(DataError, match="interface.h5"):
-        read_history(run / "interface.h5")
+        read_history(run / "interface.h5", np.array([0.0, 1.0]))
 
 
 @pytest.mark.parametrize("closed", ["", "energy.csv"])

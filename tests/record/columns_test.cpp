@@ -105,7 +105,7 @@ TEST(History, TheTableNamesEveryMember) {
   EXPECT_EQ(history_row_values(10), 1 + 10 * history_fields.size());
 }
 
-TEST(History, RowsOfTheRawFileAreThoseOfThePage) {
+TEST(History, RowsAreThoseOfThePage) {
   std::string rows = "per row `" + std::string(history_time.name) + "`, then ";
   for (std::size_t k = 0; k < history_fields.size(); ++k)
     rows += (k == 0                          ? "`"

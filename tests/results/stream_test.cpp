@@ -4,17 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 
-#include "files/checksum.hpp"
 #include "histories.hpp"
 #include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "motion/stepper.hpp"
-#include "results/hdf5.hpp"
-#include "results/history.hpp"
-#include "results/snapshots.hpp"
 #include "support/files.hpp"
+#include "support/results.hpp"
 
 namespace slipfront::results {
 namespace {
@@ -38,12 +36,34 @@ class Stream : public test::InFolder {
   }
 
   record::History row(int k) const { return made_history(1, x_m_.size(), k); }
-
-  void expect_rows(int n) const {
-    write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
-    auto expected = made_history(n, x_m_.size());
-    expected.x_m = x_m_;
-    EXPECT_TRUE(equal(read_history(folder_ / "interface.h5"), expected));
+  record::History rows(int n) const {
+    auto all = made_history(n, x_m_.size());
+    all.x_m = x_m_;
+    return all;
+  }
+  RunFiles files() const {
+    return {history_table(x_m_), {SnapshotRows::head_bytes_of({}, 10), mesh_.n_nodes}};
+  }
+  /// What rows and a snapshot with every tenth make of a folder.
+  ResultStream::Extents give(ResultStream& stream, int first, int end) {
+    for (int k = first; k < end; ++k) {
+      stream.sample(row(k));
+      if (k % 10 == 0) stream.snapshot(*stepper_);
+    }
+    return stream.keep();
+  }
+  void finish(ResultStream& stream, const std::filesystem::path& dir) {
+    stream.finish();
+    finish_snapshots(dir / snapshot_file, mesh_);
+  }
+  /// Those of a run that was not stopped.
+  void expect_whole(const std::filesystem::path& dir, int n) {
+    const test::TemporaryFolder whole;
+    ResultStream stream(whole.path(), files());
+    give(stream, 0, n);
+    finish(stream, whole.path());
+    for (const char* name : {history_file, snapshot_file})
+      EXPECT_TRUE(test::read_file(dir / name) == test::read_file(whole / name)) << name;
   }
 
   mesh::Slabs mesh_;
@@ -52,67 +72,109 @@ class Stream : public test::InFolder {
 };
 
 TEST_F(Stream, KeepsAllItWasGiven) {
-  const auto n_rows = static_cast<int>(3 * history_block_rows(x_m_.size()) + 1);  // the last block is short
-  {
-    ResultStream stream(folder_.path());
-    EXPECT_THAT(test::names_below(folder_.path()), ElementsAre("history.raw", "snapshots.raw"));
-    for (int k = 0; k < n_rows; ++k) {
-      stream.sample(row(k));
-      if (k % 1000 == 0) stream.snapshot(*stepper_);
-    }
-    const auto lengths = stream.keep();
-    EXPECT_EQ(lengths.history.bytes, n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
-  }
-  expect_rows(n_rows);
-  const auto n_snapshots = static_cast<std::size_t>((n_rows + 999) / 1000);
-  write_snapshots(folder_ / "fields.vtkhdf", mesh_,
-                  read_snapshots(ResultStream::snapshot_file(folder_.path()), mesh_.n_nodes));
-  const auto file = hdf5::open_file(folder_ / "fields.vtkhdf");
-  EXPECT_EQ(hdf5::read(file, "/VTKHDF/Steps/Values").values.size(), n_snapshots);
+  constexpr int n_rows = 4001;
+  ResultStream stream(folder_.path(), files());
+  EXPECT_THAT(test::names_below(folder_.path()), ElementsAre(history_file));
+  const auto extents = give(stream, 0, n_rows);
+  EXPECT_EQ(extents.history.bytes,
+            files().history.head_bytes() + n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
+  finish(stream, folder_.path());
+  EXPECT_TRUE(equal(test::read_history(folder_ / history_file), rows(n_rows)));
+  EXPECT_EQ(std::filesystem::file_size(folder_ / history_file), extents.history.bytes);
+  EXPECT_EQ(test::read(folder_ / snapshot_file, "/VTKHDF/Steps/Values").values.size(), 401U);
 }
 
 TEST_F(Stream, GoesOnWhereItWasKept) {
-  ResultStream::Extents lengths;
+  ResultStream::Extents extents;
   {
-    ResultStream stream(folder_.path());
-    for (int k = 0; k < 3; ++k) stream.sample(row(k));
-    stream.snapshot(*stepper_);
-    lengths = stream.keep();
-    for (int k = 3; k < 7; ++k) stream.sample(row(100 + k));  // of steps that are done again
+    ResultStream stream(folder_.path(), files());
+    extents = give(stream, 0, 13);
+    for (int k = 13; k < 17; ++k) stream.sample(row(100 + k));  // of steps that are done again
     stream.snapshot(*stepper_);
     stream.keep();
   }
-  {
-    ResultStream stream(folder_.path(), lengths);
-    for (int k = 3; k < 5; ++k) stream.sample(row(k));
-    stream.keep();
-  }
-  expect_rows(5);
-  EXPECT_EQ(read_snapshots(ResultStream::snapshot_file(folder_.path()), mesh_.n_nodes).time_s.size(), 1U);
+  ResultStream stream(folder_.path(), files(), extents);
+  give(stream, 13, 25);
+  finish(stream, folder_.path());
+  expect_whole(folder_.path(), 25);
 }
 
-TEST_F(Stream, GoesOnInNoFileThatIsTooShort) {
-  { ResultStream(folder_.path()).keep(); }
-  EXPECT_THAT(error_of([&] {
-                ResultStream(folder_.path(), {{8, ""}, {0, ""}, {}});
-              }),
-              HasSubstr("is shorter than at"));
-  std::filesystem::remove(ResultStream::history_file(folder_.path()));
-  EXPECT_THAT(error_of([&] {
-                ResultStream(folder_.path(), {{0, files::sha256("")}, {0, files::sha256("")}, {}});
-              }),
-              HasSubstr("is missing"));
+TEST_F(Stream, GoesOnInFilesThatWereFinished) {
+  ResultStream::Extents extents;
+  {
+    ResultStream stream(folder_.path(), files());
+    extents = give(stream, 0, 13);
+    give(stream, 13, 15);
+    finish(stream, folder_.path());
+  }
+  ResultStream stream(folder_.path(), files(), extents);
+  const RowReader reader(folder_ / history_file, files().history.row_values());  // it is open again
+  EXPECT_EQ(reader.n_rows(), 13U);
+  give(stream, 13, 25);
+  finish(stream, folder_.path());
+  expect_whole(folder_.path(), 25);
 }
 
-TEST_F(Stream, LeavesOutARecordThatWasCutOff) {
+TEST_F(Stream, IsFinishedOrNotWhereverFinishingIsCutOff) {
+  ResultStream stream(folder_.path(), files());
+  const auto extents = give(stream, 0, 25);
+  const auto open = [&](const char* name) { return test::read_file(folder_ / name); };
+  const std::map<std::string, std::string> before = {{history_file, open(history_file)},
+                                                     {snapshot_file, open(snapshot_file)}};
+  finish(stream, folder_.path());
+  // All but the last to be written, the first eight bytes.
+  for (const auto& [name, text] : before)
+    test::write_file(folder_ / name, text.substr(0, 8) + open(name.c_str()).substr(8));
+  const RowReader reader(folder_ / history_file, files().history.row_values());
+  EXPECT_EQ(reader.n_rows(), 25U);
+  ResultStream again(folder_.path(), files(), extents);
+  finish(again, folder_.path());
+  expect_whole(folder_.path(), 25);
+}
+
+TEST_F(Stream, WithoutSnapshotsYetLeavesNoFileOfThem) {
+  ResultStream::Extents extents;
   {
-    ResultStream stream(folder_.path());
-    for (int k = 0; k < 3; ++k) stream.sample(row(k));
+    ResultStream stream(folder_.path(), files());
+    extents = stream.keep();
+    stream.snapshot(*stepper_);
     stream.keep();
   }
-  const auto raw = ResultStream::history_file(folder_.path());
-  std::filesystem::resize_file(raw, std::filesystem::file_size(raw) - 1);
-  expect_rows(2);
+  const ResultStream stream(folder_.path(), files(), extents);
+  EXPECT_THAT(test::names_below(folder_.path()), ElementsAre(history_file));
+}
+
+TEST_F(Stream, GoesOnInNoFileThatIsAnother) {
+  ResultStream::Extents extents;
+  {
+    ResultStream stream(folder_.path(), files());
+    extents = give(stream, 0, 3);
+  }
+  const auto error = [&] { return error_of([&] { ResultStream(folder_.path(), files(), extents); }); };
+  EXPECT_EQ(error(), "(nothing thrown)");
+  const auto file = folder_ / history_file;
+  const auto text = test::read_file(file);
+  auto changed = text;
+  changed.back() = static_cast<char>(changed.back() ^ 1);
+  test::write_file(file, changed);
+  EXPECT_THAT(error(), HasSubstr("was changed or damaged since the last checkpoint"));
+  test::write_file(file, text.substr(0, text.size() - 1));
+  EXPECT_THAT(error(), HasSubstr("is shorter than at"));
+  std::filesystem::remove(file);
+  EXPECT_THAT(error(), HasSubstr("is missing"));
+}
+
+TEST_F(Stream, DoesNotFinishAFileThatWasChangedMeanwhile) {
+  for (const char* name : {history_file, snapshot_file}) {
+    ResultStream stream(folder_.path(), files());
+    give(stream, 0, 3);
+    auto text = test::read_file(folder_ / name);
+    text.back() = static_cast<char>(text.back() ^ 1);
+    test::write_file(folder_ / name, text);
+    EXPECT_EQ(error_of([&] { stream.finish(); }),
+              (folder_ / name).string() +
+                  ": is not what was written: it was changed, damaged or removed meanwhile");
+  }
 }
 
 TEST_F(Stream, AFullDiskIsToldByTheFilesName) {
@@ -120,21 +182,20 @@ TEST_F(Stream, AFullDiskIsToldByTheFilesName) {
   testing::internal::CaptureStderr();
   {
     const test::FileSizeLimit limit(256 * 1024);
-    ResultStream stream(folder_.path());
+    ResultStream stream(folder_.path(), files());
     error = error_of([&] {
       for (int k = 0;; ++k) stream.sample(row(k));
     });
   }
-  EXPECT_EQ(error, ResultStream::history_file(folder_.path()).string() +
-                       ": cannot be written (File too large); free space there");
+  EXPECT_EQ(error,
+            (folder_ / history_file).string() + ": cannot be written (File too large); free space there");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(Stream, AFileThatIsThereOrALinkIsNotReplaced) {
+TEST_F(Stream, ALinkIsNotFollowed) {
   const test::TemporaryFolder elsewhere;
-  std::filesystem::create_symlink(elsewhere / "target", ResultStream::history_file(folder_.path()));
-  EXPECT_THAT(error_of([&] { ResultStream stream(folder_.path()); }),
-              HasSubstr("cannot be created (File exists)"));
+  std::filesystem::create_symlink(elsewhere / "target", folder_ / history_file);
+  const ResultStream stream(folder_.path(), files());
   EXPECT_FALSE(std::filesystem::exists(elsewhere / "target"));
 }
 

@@ -320,7 +320,7 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
 }
 
 TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
-  fs::resize_file(folder_ / "unfinished/state/history.raw", 80);
+  fs::resize_file(folder_ / "unfinished/interface.h5", 80);
   EXPECT_THAT(resume_error(), HasSubstr("is shorter than at the last checkpoint"));
 }
 

@@ -7,8 +7,8 @@
 
 #include "cases.hpp"
 #include "mesh/plate.hpp"
-#include "results/snapshots.hpp"
 #include "support/files.hpp"
+#include "support/results.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -36,7 +36,7 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
   ASSERT_TRUE(has_equal_elements(config));
   const auto meshes = check(config);
   const auto whole = whole_snapshot_mesh(meshes);
-  const auto rows = snapshot_mesh_in_rows(config, meshes.plate.grid, meshes.base->grid);
+  const auto rows = snapshot_mesh_in_rows(config);
   int n_slabs = 0;
   rows.slabs.for_each([&](const mesh::Slab&) { ++n_slabs; });
   EXPECT_EQ(n_slabs, 4);
@@ -47,13 +47,13 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
   for (auto* field : {&snapshot.u_m, &snapshot.v_m_per_s})
     for (auto* component : {&field->x, &field->y})
       for (double& value : *component) value = some(random);
-  const test::TemporaryFolder folder;
-  const auto written = [&](const char* name, const SnapshotMesh& mesh) {
-    results::write_snapshots(folder / name, mesh.slabs, results::series_of(std::span(&snapshot, 1)),
-                             snapshot_contents(config, mesh));
-    return test::read_file(folder / name);
+  const auto written = [&](const SnapshotMesh& mesh) {
+    const test::TemporaryFolder folder;
+    test::write_snapshots(folder.path(), mesh.slabs, std::span(&snapshot, 1),
+                          snapshot_contents(config, mesh));
+    return test::read_file(folder / results::snapshot_file);
   };
-  EXPECT_TRUE(written("rows.vtkhdf", rows) == written("whole.vtkhdf", whole));
+  EXPECT_TRUE(written(rows) == written(whole));
 }
 
 INSTANTIATE_TEST_SUITE_P(, SnapshotMeshes,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,15 +13,13 @@ import numpy as np
 from slipfront.files import dataset, open_hdf5
 from slipfront.folder import result_file
 from slipfront.read import (
-    BLEW_UP,
     HISTORY_FIELDS,
     History,
     HistoryReader,
-    Place,
     checked_history,
-    history_file,
+    is_open,
     n_finite,
-    raw_history,
+    open_history,
     require,
     require_same_nodes,
 )
@@ -92,9 +91,8 @@ def thinned(
     )
 
 
-def checked(place: Place, thin: ThinHistory) -> ThinHistory:
+def checked(file: Path, thin: ThinHistory, blew_up: bool) -> ThinHistory:
     """The history, of a run that blew up as far as it is finite."""
-    file, blew_up = history_file(place), place.status == BLEW_UP
     fields = {name: getattr(thin, name) for name in HISTORY_FIELDS}
     n = n_finite(thin.time_s, *fields.values()) if blew_up else len(thin.time_s)
     cut = {name: values[:n] for name, values in fields.items()}
@@ -108,13 +106,12 @@ def checked(place: Place, thin: ThinHistory) -> ThinHistory:
 def thin_history(most: tuple[int, int]) -> HistoryReader:
     """A reader of histories with at most so many times and nodes, for read_run."""
 
-    def read(place: Place, x_m: np.ndarray) -> ThinHistory:
-        file = history_file(place)
-        if file.suffix == ".raw":
-            time_s, fields = raw_history(file, x_m)
-            require(len(time_s) >= 2, file, "fewer than two times")
-            return checked(place, thinned(time_s, x_m, fields, most))
+    def read(file: Path, x_m: np.ndarray, blew_up: bool) -> ThinHistory:
         file = result_file(file)
+        if is_open(file):
+            time_s, fields = open_history(file, x_m)
+            require(len(time_s) >= 2, file, "fewer than two times")
+            return checked(file, thinned(time_s, x_m, fields, most), blew_up)
         with open_hdf5(file) as hdf5:
             time_s, nodes_m = (dataset(hdf5, name, 1)[()] for name in ("time_s", "x_m"))
             require_same_nodes(file, nodes_m, x_m)
@@ -123,6 +120,6 @@ def thin_history(most: tuple[int, int]) -> HistoryReader:
             sets = {name: dataset(hdf5, name, 2) for name in HISTORY_FIELDS}
             for name, field in sets.items():
                 require(field.shape == shape, file, f"{name} is {field.shape}, not {shape}")
-            return checked(place, thinned(time_s, x_m, sets, most))
+            return checked(file, thinned(time_s, x_m, sets, most), blew_up)
 
     return read

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/table.hpp"
+
+#include <algorithm>
+
+#include "results/rows.hpp"
+
+namespace slipfront::results {
+namespace {
+
+template <class Record>
+Description description_of(const record::Column<Record, std::vector<double>>& column) {
+  return {column.name, column.unit, column.description};
+}
+
+template <class Columns>
+std::vector<Description> descriptions_of(const Columns& columns) {
+  std::vector<Description> all;
+  for (const auto& column : columns) all.push_back(description_of(column));
+  return all;
+}
+
+void describe(const hdf5::File& file, const Description& about) {
+  hdf5::set_attribute(file, about.name, "unit", std::string(about.unit));
+  hdf5::set_attribute(file, about.name, "description", std::string(about.description));
+}
+
+}  // namespace
+
+std::uint64_t Table::head_bytes() const {
+  std::size_t longest = 0;
+  for (const auto& name : names) longest = std::max(longest, name.size());
+  return results::head_bytes(origin, n_places() * (axes.size() * sizeof(double) + longest));
+}
+
+Table history_table(std::span<const double> x_m, const Origin& origin) {
+  return {origin,
+          {{description_of(record::history_place), {x_m.begin(), x_m.end()}}},
+          {},
+          description_of(record::history_time),
+          descriptions_of(record::history_fields)};
+}
+
+Table probe_table(std::span<const record::ProbePlace> places, const Origin& origin) {
+  Table table{origin,
+              {{{"x_m", "m", "position along the interface from the left edge"}, {}},
+               {{"y_m", "m", "position above the interface; below 0 in the base"}, {}}},
+              {},
+              description_of(record::probe_time),
+              descriptions_of(record::probe_fields)};
+  for (const auto& place : places) {
+    table.names.push_back(place.name);
+    table.axes[0].values.push_back(place.x_m);
+    table.axes[1].values.push_back(place.y_m);
+  }
+  return table;
+}
+
+void finish(const std::filesystem::path& path, const Table& table) {
+  const auto n = table.n_places();
+  const auto n_rows = RowReader(path, table.row_values()).n_rows();
+  const hdf5::Rows rows{rows_name, n_rows, table.row_values()};
+  const auto describe_all = [&](const hdf5::File& file) {
+    if (!table.names.empty()) {
+      hdf5::write_texts(file, "name", table.names);
+      hdf5::set_attribute(file, "name", "description", std::string("name of the probe"));
+    }
+    for (const auto& axis : table.axes) {
+      hdf5::write(file, axis.about.name, axis.values, {n});
+      describe(file, axis.about);
+    }
+    hdf5::create_view(file, table.time.name, {n_rows}, rows, {{.first = 0, .n = 1}});
+    describe(file, table.time);
+    for (std::size_t k = 0; k < table.fields.size(); ++k) {
+      hdf5::create_view(file, table.fields[k].name, {n_rows, n}, rows, {{.first = 1 + k * n, .n = n}});
+      describe(file, table.fields[k]);
+    }
+  };
+  Layout(path, table.head_bytes(), rows, table.origin, describe_all).finish();
+}
+
+}  // namespace slipfront::results
