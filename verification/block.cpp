@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "interface/friction/slip_weakening.hpp"
-#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
@@ -25,8 +24,9 @@ struct Drive {
   double end = 0;
 };
 
+/// Over time.
 struct History {
-  std::vector<double> time, traction, slip;
+  Curve traction, slip;
 };
 
 constexpr double drop_Pa = (mu_s - mu_k) * p_Pa;
@@ -48,9 +48,8 @@ History characteristics(const Drive& drive) {
     if (slides && v < 0) slides = false;
     f[j % n] = slides ? g - residual : -g;
     if (slides) slip += v / n;
-    h.time.push_back((j + 0.5) / n);
-    h.traction.push_back(g - f[j % n]);
-    h.slip.push_back(slip);
+    h.traction.add((j + 0.5) / n, g - f[j % n]);
+    h.slip.add((j + 0.5) / n, slip);
   }
   return h;
 }
@@ -59,91 +58,78 @@ History characteristics(const Drive& drive) {
 History program(const Drive& drive, const solid::Material& material, int rows, double step_factor) {
   const double h_m = H_m / rows, c_S = solid::shear_speed_m_per_s(material);
   const double T_s = 2 * H_m / c_S, v_m_per_s = drop_Pa / (material.density_kg_per_m3 * c_S);
-  const auto mesh = mesh::make_plate({.width_m = 3 * h_m,
-                                      .height_m = H_m,
-                                      .element_size_m = h_m,
-                                      .corner = mesh::Corner::none,
-                                      .sides = mesh::Sides::periodic});
+  const auto mesh = layer(3 * h_m, H_m, h_m);
   // Full weakening within one step of any slip.
   const interface::SlipWeakeningHealing law { .mu_s = mu_s, .mu_k = mu_k, .d_c_m = 1e-15 };
   // Constant pressure: otherwise waves of a few elements along x grow from rounding.
   motion::Stepper stepper(mesh, material, {law, {.relaxed = interface::Relaxed::pressure}},
                           plain_stepping(step_factor));
   const double strain = drive.first_traction * drop_Pa / solid::shear_modulus_Pa(material);
-  const auto state = start(stepper, mesh,
-                           {.u_x_m =
-                                [&](mesh::Node n, double time) {
-                                  return mesh.y_m[n] * (strain + drive.top_speed * v_m_per_s * time / H_m);
-                                },
-                            .contact = statics::Contact::stick,
-                            .t_Pa = drive.first_traction * drop_Pa,
-                            .p_Pa = p_Pa,
-                            .loads = {std::vector<double>(mesh.interface_nodes.size(), 0.0),
-                                      std::vector<double>(mesh.interface_nodes.size(), p_Pa)}});
-  motion::Recorder recorder(state, mu_s, 0);
+  const auto u_x = [&](mesh::Node n, double time) {
+    return mesh.y_m[n] * (strain + drive.top_speed * v_m_per_s * time / H_m);
+  };
+  start(stepper, mesh,
+        {.u_x_m = u_x,
+         .contact = statics::Contact::stick,
+         .t_Pa = drive.first_traction * drop_Pa,
+         .p_Pa = p_Pa,
+         .loads = {std::vector<double>(mesh.interface_nodes.size(), 0.0),
+                   std::vector<double>(mesh.interface_nodes.size(), p_Pa)}});
   History h;
   while (stepper.time_s() < drive.end * T_s) {
     // The tractions of a step belong to the places at its beginning.
-    const double slip_m = stepper.u_m().x[mesh.interface_nodes[0]];
-    h.time.push_back(stepper.time_s() / T_s);
-    stepper.advance(recorder);
-    h.traction.push_back(stepper.interface_state().t_Pa[0] / drop_Pa);
-    h.slip.push_back(slip_m / (v_m_per_s * T_s));
+    const double time = stepper.time_s() / T_s, slip_m = stepper.u_m().x[mesh.interface_nodes[0]];
+    advance(stepper);
+    h.traction.add(time, stepper.interface_state().t_Pa[0] / drop_Pa);
+    h.slip.add(time, slip_m / (v_m_per_s * T_s));
   }
   return h;
 }
 
-double value_at(const History& h, const std::vector<double>& values, double time) {
-  const auto i = static_cast<std::size_t>(std::ranges::lower_bound(h.time, time) - h.time.begin());
-  const double w = (time - h.time[i - 1]) / (h.time[i] - h.time[i - 1]);
-  return (1 - w) * values[i - 1] + w * values[i];
+Curve theory(const Curve& curve) {
+  return {"theory", Curve::Kind::theory, curve.x, curve.y};
 }
 
 /// Few enough to be told apart.
-Curve points(const char* label, const std::vector<double>& time, const std::vector<double>& values) {
-  Curve curve{label, Curve::Kind::program, {}, {}};
-  const std::size_t every = time.size() / 58;
-  for (std::size_t i = every / 2; i < time.size(); i += every) {
-    curve.x.push_back(time[i]);
-    curve.y.push_back(values[i]);
-  }
+Curve points(const char* label, const Curve& all) {
+  Curve curve{label};
+  const std::size_t every = all.x.size() / 58;
+  for (std::size_t i = every / 2; i < all.x.size(); i += every) curve.add(all.x[i], all.y[i]);
   return curve;
 }
 
-double mean(const History& h, double from, double to) {
+double mean(const Curve& curve, double from, double to) {
   double sum = 0;
   int n = 0;
-  for (std::size_t i = 0; i < h.time.size(); ++i)
-    if (h.time[i] > from && h.time[i] < to) sum += h.traction[i], ++n;
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    if (curve.x[i] > from && curve.x[i] < to) sum += curve.y[i], ++n;
   return sum / n;
 }
 
 /// One event, the top all but at rest.
 void single_event(Effort effort, Outcome& outcome) {
-  const solid::Material material{.stiffness_damping_s = 0};
-  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
+  const double c_L = solid::longitudinal_speed_m_per_s(undamped), c_S = solid::shear_speed_m_per_s(undamped);
   const Drive slow{.top_speed = 1e-4, .first_traction = strength * (1 - 1e-6), .end = 3};
   Chart chart{.x_label = "time c_S / 2 H", .y_label = "traction / strength drop"};
   const auto exact = characteristics(slow);
-  chart.curves.push_back({"theory", Curve::Kind::theory, exact.time, exact.traction});
+  chart.curves.push_back(theory(exact.traction));
   for (const int rows :
        effort == Effort::full ? std::vector{50, 100, 200, 400, 800, 1600} : std::vector{50, 200}) {
-    const auto h = program(slow, material, rows, 0.9);
+    const auto h = program(slow, undamped, rows, 0.9);
     // The step dt of c_L dt = 0.9 h spreads a front that has gone 2 H over the length l of an Airy function.
     const double courant = 0.9 * c_S / c_L;
     const double spread = std::cbrt((1 - courant * courant) / 8 * 2 * rows) / (2 * rows);
-    const double slip = h.slip.back();
-    outcome.checks.push_back({fmt::format("slip of an event over 2 H (t_s - t_k)/G, h = H/{}", rows), "",
-                              slip, 1, spread + courant / rows,
-                              "spread of the front by dispersion, over 2 H, and a step at either end"});
+    const double slip = h.slip.y.back();
+    outcome.check(fmt::format("slip of an event over 2 H (t_s - t_k)/G, h = H/{}", rows), slip, 1,
+                  spread + courant / rows,
+                  "spread of the front by dispersion, over 2 H, and a step at either end");
     if (rows != 200) continue;
-    outcome.checks.push_back(
-        {fmt::format("drop of the traction over t_s - t_k, mean of 2 H/c_S after the event, "
-                     "h = H/{}",
-                     rows),
-         "", strength - mean(h, 1.5, 2.5), 2, 2 * (spread + courant / rows),
-         "as for the slip, which sets the drop at rest"});
-    chart.curves.push_back(points("h = H/200", h.time, h.traction));
+    outcome.check(fmt::format("drop of the traction over t_s - t_k, mean of 2 H/c_S after the event, "
+                              "h = H/{}",
+                              rows),
+                  strength - mean(h.traction, 1.5, 2.5), 2, 2 * (spread + courant / rows),
+                  "as for the slip, which sets the drop at rest");
+    chart.curves.push_back(points("h = H/200", h.traction));
   }
   outcome.charts.push_back(std::move(chart));
 }
@@ -164,14 +150,12 @@ struct StickSlip {
   /// Damping spreads a front into a Gauss error function of standard deviation sqrt(beta t). [T]
   double spread(double time) const { return std::sqrt(0.15 / rows * time); }
   bool rests_from(double time) const {
-    const double slip_before = value_at(theory, theory.slip, time - 0.01),
-                 slip = value_at(theory, theory.slip, time);
-    return slip == value_at(theory, theory.slip, time + 0.5) && slip_before < slip;
+    const double slip_before = theory.slip.value_at(time - 0.01), slip = theory.slip.value_at(time);
+    return slip == theory.slip.value_at(time + 0.5) && slip_before < slip;
   }
   bool is_away_from_fronts(double time) const {
     const double around = 3 * spread(time);
-    const double jump =
-        value_at(theory, theory.traction, time + around) - value_at(theory, theory.traction, time - around);
+    const double jump = theory.traction.value_at(time + around) - theory.traction.value_at(time - around);
     return std::abs(jump) <= 4 * drive.top_speed * around + 0.01;
   }
   /// Times of the comparison.
@@ -188,10 +172,9 @@ void check_slips(const StickSlip& s, Outcome& outcome) {
     if (!s.rests_from(time)) continue;
     ++n_events;
     const double later = time + 0.5;
-    outcome.checks.push_back(
-        {fmt::format("slip after event {} over 2 H (t_s - t_k)/G, h = H/{}", n_events, s.rows), "",
-         value_at(s.cycle, s.cycle.slip, later), value_at(s.theory, s.theory.slip, time), 2 * s.spread(later),
-         "spread of the fronts that begin and end each event"});
+    outcome.check(fmt::format("slip after event {} over 2 H (t_s - t_k)/G, h = H/{}", n_events, s.rows),
+                  s.cycle.slip.value_at(later), s.theory.slip.value_at(time), 2 * s.spread(later),
+                  "spread of the fronts that begin and end each event");
   }
 }
 
@@ -200,30 +183,26 @@ void check_traction(const StickSlip& s, Outcome& outcome) {
   int n_compared = 0;
   for (const double time : s.times()) {
     if (!s.is_away_from_fronts(time)) continue;
-    const double difference =
-        value_at(s.cycle, s.cycle.traction, time) - value_at(s.theory, s.theory.traction, time);
+    const double difference = s.cycle.traction.value_at(time) - s.theory.traction.value_at(time);
     square += difference * difference;
     // The slope along a stick times the delay, and 2 per slip, the stiffness of the column.
     const double tolerance = (2 * s.drive.top_speed + 2 * 2) * s.spread(time);
     allowed += tolerance * tolerance;
     ++n_compared;
   }
-  outcome.checks.push_back(
-      {fmt::format("traction over t_s - t_k away from fronts: rms deviation, h = H/{}", s.rows), "",
-       std::sqrt(square / n_compared), 0, std::sqrt(allowed / n_compared),
-       "delay of the fronts, and the stiffness of the column times the slips' tolerance"});
+  outcome.check(fmt::format("traction over t_s - t_k away from fronts: rms deviation, h = H/{}", s.rows),
+                std::sqrt(square / n_compared), 0, std::sqrt(allowed / n_compared),
+                "delay of the fronts, and the stiffness of the column times the slips' tolerance");
 }
 
 void draw(const StickSlip& s, Outcome& outcome) {
-  const auto chart = [&](const char* y_label, const std::vector<double>& theory,
-                         const std::vector<double>& program) {
-    Chart both{.x_label = "time c_S / 2 H", .y_label = y_label};
-    both.curves = {{"theory", Curve::Kind::theory, s.theory.time, theory},
-                   points("program", s.cycle.time, program)};
-    return both;
+  const auto add_chart = [&](const char* y_label, const Curve& exact, const Curve& program) {
+    outcome.charts.push_back({.x_label = "time c_S / 2 H",
+                              .y_label = y_label,
+                              .curves = {theory(exact), points("program", program)}});
   };
-  outcome.charts.push_back(chart("traction / strength drop", s.theory.traction, s.cycle.traction));
-  outcome.charts.push_back(chart("slip G / (2 H strength drop)", s.theory.slip, s.cycle.slip));
+  add_chart("traction / strength drop", s.theory.traction, s.cycle.traction);
+  add_chart("slip G / (2 H strength drop)", s.theory.slip, s.cycle.slip);
 }
 
 }  // namespace

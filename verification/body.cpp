@@ -22,6 +22,10 @@ void set_motion(const motion::Body& body, const mesh::Mesh& mesh, const NodeMoti
   }
 }
 
+class NoObserver final : public motion::UpdateObserver {
+  void observe(double, const interface::Interface&, bool) override {}
+};
+
 }  // namespace
 
 statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, const Start& start) {
@@ -37,6 +41,25 @@ statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, con
   state.tractions.p_s_Pa.assign(mesh.interface_nodes.size(), start.p_Pa);
   stepper.start(state, 1, start.loads);
   return state;
+}
+
+void advance(motion::Stepper& stepper) {
+  NoObserver none;
+  stepper.advance(none);
+}
+
+void reverse(motion::Stepper& stepper) {
+  NoObserver none;
+  stepper.reverse(none);
+}
+
+mesh::Mesh layer(double width_m, double height_m, double element_size_m, mesh::Top top) {
+  return mesh::make_plate({.width_m = width_m,
+                           .height_m = height_m,
+                           .element_size_m = element_size_m,
+                           .corner = mesh::Corner::none,
+                           .sides = mesh::Sides::periodic,
+                           .top = top});
 }
 
 }  // namespace slipfront::verification

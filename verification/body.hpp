@@ -9,6 +9,9 @@
 
 namespace slipfront::verification {
 
+/// PMMA without damping: the body of most problems.
+inline constexpr solid::Material undamped{.stiffness_damping_s = 0};
+
 using NodeMotion = std::function<double(mesh::Node, double time_s)>;  ///< empty for none
 
 /// Starts a stepper from a motion u(node, time) that is known: displacements at time 0, velocities of the
@@ -26,7 +29,7 @@ struct Start {
   motion::Loads loads = {};
 };
 
-/// @return the state from which the stepper was started, as a recorder needs it.
+/// @return the state from which the stepper was started
 statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, const Start& start);
 
 /// The whole plate with one step.
@@ -36,5 +39,13 @@ inline motion::TimeStepping plain_stepping(double step_factor = 0.9) {
   time.interface_substeps = 1;
   return time;
 }
+
+/// One step, which no one observes.
+void advance(motion::Stepper& stepper);
+/// Turns the motion round, see motion::Stepper.
+void reverse(motion::Stepper& stepper);
+
+/// A plate that repeats along x, of right angles: waves along y stay plane.
+mesh::Mesh layer(double width_m, double height_m, double element_size_m, mesh::Top top = mesh::Top::loaded);
 
 }  // namespace slipfront::verification

@@ -9,10 +9,8 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
-#include "motion/observers/onsets.hpp"
 #include "statics/prestress.hpp"
 #include "verification/body.hpp"
-#include "verification/join.hpp"
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 #include "verification/scattering.hpp"
@@ -164,12 +162,7 @@ mesh::Mesh mesh_of(const Packet& packet, int body, double h_m) {
     const double c = speed_m_per_s(material, kind);
     fastest = std::max(fastest, c * c * leaving_k_y(material, kind, k_x, omega).real() / omega);
   }
-  return mesh::make_plate({.width_m = width_m,
-                           .height_m = h_m * std::ceil(1.1 * fastest * packet.end_s() / h_m),
-                           .element_size_m = h_m,
-                           .corner = mesh::Corner::none,
-                           .sides = mesh::Sides::periodic,
-                           .top = mesh::Top::absorbing});
+  return layer(width_m, h_m * std::ceil(1.1 * fastest * packet.end_s() / h_m), h_m, mesh::Top::absorbing);
 }
 
 /// Amplitude at k_x of each row of nodes.
@@ -289,8 +282,7 @@ Points scatter(const Packet& packet, double elements_per_wave, bool subcycled) {
                             MeshWaves(bodies[1], h_m, step_s(stepper.bodies()[1]))};
   const auto state = bonded(meshes, motion_of(packet, meshes[0], waves[0]));
   stepper.start(state, 1, {state.tractions.t_s_Pa, state.tractions.p_s_Pa});
-  motion::Recorder recorder(state, bonding_friction, 0);
-  while (stepper.time_s() < packet.end_s()) stepper.advance(recorder);
+  while (stepper.time_s() < packet.end_s()) advance(stepper);
 
   // Amplitudes over time and frequency: spectra over k_y, over the group velocity.
   const auto of_frequency = [&](const Rows& rows, int body, Kind kind, double k_y) {
@@ -342,8 +334,8 @@ class AmplitudeChart {
  public:
   AmplitudeChart(const Pair& pair, Kind kind) : pair_(pair), kind_(kind) {
     for (int w = 0; w < 4; ++w) {
-      theory_[w] = {w == 0 ? "theory" : "", Curve::Kind::theory, {}, {}};
-      program_[w] = {wave_names[w / 2][w % 2], Curve::Kind::program, {}, {}};
+      theory_[w] = {w == 0 ? "theory" : "", Curve::Kind::theory};
+      program_[w] = {wave_names[w / 2][w % 2]};
     }
     for (double angle = 0.25; angle <= 60; angle += 0.25) {
       const double omega = k_x * speed_m_per_s(pair.bodies[0], kind) / std::sin(angle * degree);
@@ -368,8 +360,8 @@ class AmplitudeChart {
       for (const Kind kind : kinds) {
         if (!leaves(pair_, body, kind, omega)) continue;
         auto& curve = curves[2 * body + static_cast<int>(kind)];
-        curve.x.push_back(std::asin(k_x * speed_m_per_s(pair_.bodies[0], kind_) / omega) / degree);
-        curve.y.push_back(std::abs(of(amplitudes, body, kind)));
+        curve.add(std::asin(k_x * speed_m_per_s(pair_.bodies[0], kind_) / omega) / degree,
+                  std::abs(of(amplitudes, body, kind)));
       }
   }
   const Pair& pair_;
@@ -418,16 +410,16 @@ Outcome bonded_waves(Effort effort) {
             if (subcycled && elements == 16) amplitudes.add(points);
           }
           if (!subcycled)
-            outcome.checks.push_back({fmt::format("order of the error, one step, {}", what), "",
-                                      c.order(c.error, 1), 2, 0.2, "the error's next term"});
+            outcome.check(fmt::format("order of the error, one step, {}", what), c.order(c.error, 1), 2, 0.2,
+                          "the error's next term");
           else
-            outcome.checks.push_back({fmt::format("error left beside the joins, 16 elements, {}", what), "",
-                                      c.error_of_joined[1], 0, 0.5 * c.error_of_joined[0],
-                                      "half of that of 8 elements; second order leaves a quarter"});
+            outcome.check(fmt::format("error left beside the joins, 16 elements, {}", what),
+                          c.error_of_joined[1], 0, 0.5 * c.error_of_joined[0],
+                          "half of that of 8 elements; second order leaves a quarter");
           if (subcycled && finer)
-            outcome.checks.push_back({fmt::format("order of the error left beside the joins, {}", what), "",
-                                      c.order(c.error_of_joined, 2), 2, 0.5,
-                                      "half an order: higher terms of the joins on meshes this coarse"});
+            outcome.check(fmt::format("order of the error left beside the joins, {}", what),
+                          c.order(c.error_of_joined, 2), 2, 0.5,
+                          "half an order: higher terms of the joins on meshes this coarse");
           if (!middle || !pair.in_step) continue;
           const auto add = [&](const char* of_what, const std::vector<double>& y) {
             errors.curves.push_back(
@@ -438,11 +430,10 @@ Outcome bonded_waves(Effort effort) {
           if (!subcycled && kind == Kind::shear) errors.curves.push_back(order_line(2, c.kh, c.error.back()));
         }
       }
-      outcome.checks.push_back({fmt::format("flux of energy of the four waves over the incident one, less 1, "
-                                            "{}, {}: largest",
-                                            name(kind), pair.name),
-                                "", flux, 0, 1e-3,
-                                "the packet's tails: waves that come to the bond late, or graze it"});
+      outcome.check(fmt::format("flux of energy of the four waves over the incident one, less 1, "
+                                "{}, {}: largest",
+                                name(kind), pair.name),
+                    flux, 0, 1e-3, "the packet's tails: waves that come to the bond late, or graze it");
       outcome.charts.push_back(amplitudes.chart());
     }
   outcome.charts.push_back(std::move(errors));

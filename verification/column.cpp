@@ -7,7 +7,6 @@
 #include <string>
 
 #include "interface/friction/velocity_weakening.hpp"
-#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
@@ -48,12 +47,7 @@ struct Column {
   double return_s;
 
   explicit Column(double height_m)
-      : mesh(mesh::make_plate({.width_m = 4 * h_m,
-                               .height_m = height_m,
-                               .element_size_m = h_m,
-                               .corner = mesh::Corner::none,
-                               .sides = mesh::Sides::periodic})),
-        return_s(2 * height_m / solid::shear_speed_m_per_s(material)) {}
+      : mesh(layer(4 * h_m, height_m, h_m)), return_s(2 * height_m / solid::shear_speed_m_per_s(material)) {}
   double impedance() const { return material.density_kg_per_m3 * solid::shear_speed_m_per_s(material); }
 };
 
@@ -61,9 +55,17 @@ struct Column {
 class Fall {
  public:
   Fall(const Column& column, const Case& c)
-      : column_(column),
-        stepper_(column.mesh, column.material, {c.law()}, plain_stepping()),
-        recorder_(begin(column, c, stepper_), c.mu_s, 0) {}
+      : column_(column), stepper_(column.mesh, column.material, {c.law()}, plain_stepping()) {
+    const auto& mesh = column.mesh;
+    const double shear = c.tau0_Pa / solid::shear_modulus_Pa(column.material);
+    const double strain = pressure_Pa / solid::longitudinal_modulus_Pa(column.material);
+    start(stepper_, mesh,
+          {.u_x_m = [&](mesh::Node n, double) { return shear * mesh.y_m[n]; },
+           .u_y_m = [&](mesh::Node n, double) { return -strain * mesh.y_m[n]; },
+           .contact = statics::Contact::stick,
+           .t_Pa = c.tau0_Pa,
+           .p_Pa = pressure_Pa});
+  }
 
   struct Place {
     double time_s, slip_m;
@@ -72,10 +74,9 @@ class Fall {
   Place to(double time_s) {
     const auto node = column_.mesh.interface_nodes[1];
     while (stepper_.time_s() < time_s) {
-      stepper_.advance(recorder_);
+      advance(stepper_);
       if (stepper_.time_s() < next_s_) continue;
-      slip_rate_.x.push_back(stepper_.time_s() / column_.return_s);
-      slip_rate_.y.push_back(stepper_.v_m_per_s().x[node]);
+      slip_rate_.add(stepper_.time_s() / column_.return_s, stepper_.v_m_per_s().x[node]);
       next_s_ += 0.04 * column_.return_s;
     }
     return {stepper_.time_s(), stepper_.u_m().x[node]};
@@ -84,7 +85,7 @@ class Fall {
     double sum = 0;
     int n = 0;
     while (stepper_.time_s() < time_s) {
-      stepper_.advance(recorder_);
+      advance(stepper_);
       sum += stepper_.interface_state().t_Pa[1];
       ++n;
     }
@@ -104,23 +105,10 @@ class Fall {
   const Curve& slip_rate() const { return slip_rate_; }
 
  private:
-  static statics::Equilibrium begin(const Column& column, const Case& c, motion::Stepper& stepper) {
-    const auto& mesh = column.mesh;
-    const double shear = c.tau0_Pa / solid::shear_modulus_Pa(column.material);
-    const double strain = pressure_Pa / solid::longitudinal_modulus_Pa(column.material);
-    return start(stepper, mesh,
-                 {.u_x_m = [&](mesh::Node n, double) { return shear * mesh.y_m[n]; },
-                  .u_y_m = [&](mesh::Node n, double) { return -strain * mesh.y_m[n]; },
-                  .contact = statics::Contact::stick,
-                  .t_Pa = c.tau0_Pa,
-                  .p_Pa = pressure_Pa});
-  }
-
   const Column& column_;
   motion::Stepper stepper_;
-  motion::Recorder recorder_;
   double next_s_ = 0;
-  Curve slip_rate_{"", Curve::Kind::program, {}, {}};
+  Curve slip_rate_;
 };
 
 void compare(const Column& column, const Case& c, Outcome& outcome, Chart& rate) {
@@ -131,24 +119,23 @@ void compare(const Column& column, const Case& c, Outcome& outcome, Chart& rate)
       {rate.curves.empty() ? "theory" : "", Curve::Kind::theory, {0, 1, 1, 1.4}, {v, v, 0, 0}});
   Fall fall(column, c);
   const auto first = fall.to(0.4 * return_s), second = fall.to(0.7 * return_s);
-  outcome.checks.push_back({fmt::format("slip rate, {}", name), "m/s",
-                            (second.slip_m - first.slip_m) / (second.time_s - first.time_s), v, 1e-6 * v,
-                            "tail of the returning front, six of its widths away"});
+  outcome.check(fmt::format("slip rate, {}", name),
+                (second.slip_m - first.slip_m) / (second.time_s - first.time_s), v, 1e-6 * v,
+                "tail of the returning front, six of its widths away", "m/s");
   fall.to(1.4 * return_s);
   const auto [least, most] = fall.slips_m();
-  outcome.checks.push_back({fmt::format("slip, {}", name), "um", 1e6 * most, 1e6 * v * return_s,
-                            3e6 * v * std::sqrt(column.material.stiffness_damping_s * return_s),
-                            "three widths of the front, which damping spreads"});
+  outcome.check(fmt::format("slip, {}", name), 1e6 * most, 1e6 * v * return_s,
+                3e6 * v * std::sqrt(column.material.stiffness_damping_s * return_s),
+                "three widths of the front, which damping spreads", "um");
   // Sliding of a wider plane would not stay uniform without the damping.
-  outcome.checks.push_back({fmt::format("slip of the interface nodes, largest difference, {}", name), "um",
-                            1e6 * (most - least), 0, 1e6 * most * 1e-12,
-                            "rounding that disturbances along the interface do not amplify"});
+  outcome.check(fmt::format("slip of the interface nodes, largest difference, {}", name),
+                1e6 * (most - least), 0, 1e6 * most * 1e-12,
+                "rounding that disturbances along the interface do not amplify", "um");
   rate.curves.push_back(fall.slip_rate());
   rate.curves.back().label = fmt::format("{:.2f} MPa, mu_k {}", 1e-6 * c.tau0_Pa, c.mu_k);
-  outcome.checks.push_back({fmt::format("traction after the return, {}", name), "MPa",
-                            fall.mean_traction_MPa_until(1.6 * return_s),
-                            1e-6 * (c.tau0_Pa - 2 * impedance * v), 1e-6 * impedance * v * 1e-6,
-                            "tails of the fronts"});
+  outcome.check(fmt::format("traction after the return, {}", name),
+                fall.mean_traction_MPa_until(1.6 * return_s), 1e-6 * (c.tau0_Pa - 2 * impedance * v),
+                1e-6 * impedance * v * 1e-6, "tails of the fronts", "MPa");
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "interface/friction/slip_weakening.hpp"
-#include "verification/extrapolation.hpp"
 #include "verification/loaded_plane.hpp"
+#include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
 namespace slipfront::verification {
@@ -20,20 +20,11 @@ constexpr double p_Pa = 50e6;  // far above its changes by slip, so that the bod
 constexpr double strength_drop_Pa = 5e6;
 constexpr double residual_Pa = 5e6;
 
-const solid::Material& material() {
-  static const solid::Material m{.stiffness_damping_s = 0};
-  return m;
-}
-double c_S() {
-  return solid::shear_speed_m_per_s(material());
-}
-double c_L() {
-  return solid::longitudinal_speed_m_per_s(material());
-}
+const double c_S = solid::shear_speed_m_per_s(undamped), c_L = solid::longitudinal_speed_m_per_s(undamped);
 
 /// Slip-weakening zone of a crack at rest, its traction taken as linear in x (Palmer and Rice 1973).
 double zone_m(double fracture_energy_J_per_m2) {
-  const double K2 = 4 * sliding_stiffness_Pa(material()) * fracture_energy_J_per_m2;
+  const double K2 = 4 * sliding_stiffness_Pa() * fracture_energy_J_per_m2;
   return 9 * pi / 32 * K2 / (strength_drop_Pa * strength_drop_Pa);
 }
 
@@ -51,15 +42,15 @@ double fracture_energy_J_per_m2(const interface::SlipWeakening& law) {
 
 /// Y(v): stiffness of a crack tip at speed v.
 double tip_stiffness_Pa(double v) {
-  if (v == 0) return sliding_stiffness_Pa(material());
-  const double a_d = std::sqrt(1 - std::pow(v / c_L(), 2)), a_s = std::sqrt(1 - std::pow(v / c_S(), 2));
-  return solid::shear_modulus_Pa(material()) * a_d * std::pow(v / c_S(), 2) / (1 - a_d * a_s);
+  if (v == 0) return sliding_stiffness_Pa();
+  const double a_d = std::sqrt(1 - std::pow(v / c_L, 2)), a_s = std::sqrt(1 - std::pow(v / c_S, 2));
+  return solid::shear_modulus_Pa(undamped) * a_d * std::pow(v / c_S, 2) / (1 - a_d * a_s);
 }
 
 /// K(v)/K(0) under a load that is there from the beginning: sqrt(1 - v/c_L)/S+(-1/v).
 double universal_K(double v) {
   if (v == 0) return 1;
-  const double a = 1 / c_L(), b = 1 / c_S();
+  const double a = 1 / c_L, b = 1 / c_S;
   constexpr int n = 400;  // midpoint rule in an angle: both ends of the integrand are square roots
   double integral = 0;
   for (int j = 0; j < n; ++j) {
@@ -69,19 +60,19 @@ double universal_K(double v) {
     integral += std::atan2(alpha_beta, slowness * slowness) / (1 / v - slowness) * 0.5 * (b - a) *
                 std::sin(angle) * pi / n;
   }
-  return std::sqrt(1 - v / c_L()) * std::exp(-integral / pi);
+  return std::sqrt(1 - v / c_L) * std::exp(-integral / pi);
 }
 
 /// G(v)/G(0) under such a load.
 double universal_G(double v) {
   const double k = universal_K(v);
-  return k * k * sliding_stiffness_Pa(material()) / tip_stiffness_Pa(v);
+  return k * k * sliding_stiffness_Pa() / tip_stiffness_Pa(v);
 }
 
 /// v at which G(v)/G(0) has a value; c_S where even c_S leaves more.
 double speed_at(double ratio) {
   if (ratio >= 1) return 0;
-  double low = 0, high = c_S();
+  double low = 0, high = c_S;
   for (int j = 0; j < 60; ++j) {
     const double v = 0.5 * (low + high);
     (universal_G(v) > ratio ? low : high) = v;
@@ -102,15 +93,10 @@ double slip_contour_m(const LoadedBody& body, double slip_m, double from_m) {
 /// The path of a tip: times in t_c, places and speeds in c_S t_c and c_S.
 struct Run {
   double zone = 0;  ///< of the crack at rest over c_S t_c
-  std::vector<double> time = {}, place = {};
+  Curve place = {};
 
-  double place_at(double t) const {
-    const auto i = static_cast<std::size_t>(std::ranges::lower_bound(time, t) - time.begin());
-    const double w = (t - time[i - 1]) / (time[i] - time[i - 1]);
-    return (1 - w) * place[i - 1] + w * place[i];
-  }
   double speed_at(double t, double half) const {
-    return (place_at(t + half) - place_at(t - half)) / (2 * half);
+    return (place.value_at(t + half) - place.value_at(t - half)) / (2 * half);
   }
 };
 
@@ -122,14 +108,13 @@ Run run(double ratio, int elements_per_zone) {
   const double drop_Pa = strength_drop_Pa / ratio;
   constexpr double h_m = 1e-3;
   const auto law = law_of_zone(elements_per_zone * h_m);
-  const double t_c = pi * solid::shear_modulus_Pa(material()) * fracture_energy_J_per_m2(law) /
-                     (2 * drop_Pa * drop_Pa * c_S());
-  const double unit_m = c_S() * t_c;
+  const double t_c =
+      pi * solid::shear_modulus_Pa(undamped) * fracture_energy_J_per_m2(law) / (2 * drop_Pa * drop_Pa * c_S);
+  const double unit_m = c_S * t_c;
   // Waves from the edges reach neither the tip nor what it sees: half the way there and back.
-  const double half_width_m = std::ceil(c_L() / c_S() * run_end * unit_m / h_m) * h_m;
-  LoadedBody body({.material = material(),
-                   .width_m = 2 * half_width_m,
-                   .height_m = std::ceil(0.5 * c_L() / c_S() * run_end * unit_m / h_m) * h_m,
+  const double half_width_m = std::ceil(c_L / c_S * run_end * unit_m / h_m) * h_m;
+  LoadedBody body({.width_m = 2 * half_width_m,
+                   .height_m = std::ceil(0.5 * c_L / c_S * run_end * unit_m / h_m) * h_m,
                    .h_m = h_m,
                    .pressure_Pa = p_Pa,
                    .law = law,
@@ -138,8 +123,7 @@ Run run(double ratio, int elements_per_zone) {
   Run run{.zone = elements_per_zone * h_m / unit_m};
   while (body.time_s() < run_end * t_c) {
     body.advance();
-    run.time.push_back(body.time_s() / t_c);
-    run.place.push_back(slip_contour_m(body, 0.5 * law.d_c_m, -0.25 * h_m) / unit_m);
+    run.place.add(body.time_s() / t_c, slip_contour_m(body, 0.5 * law.d_c_m, -0.25 * h_m) / unit_m);
   }
   return run;
 }
@@ -169,16 +153,15 @@ Arrest grow_and_stop(double r_over_zone, double width_over_r) {
   constexpr double h_m = 1e-3;
   const double r_m = r_over_zone * elements_per_zone * h_m;
   const auto law = law_of_zone(elements_per_zone * h_m);
-  const double K = std::sqrt(4 * sliding_stiffness_Pa(material()) * fracture_energy_J_per_m2(law));
+  const double K = std::sqrt(4 * sliding_stiffness_Pa() * fracture_energy_J_per_m2(law));
   const double first_drop_Pa = K / std::sqrt(pi * r_m);
-  LoadedBody body({.material = material(),
-                   .width_m = width_over_r * r_m,
+  LoadedBody body({.width_m = width_over_r * r_m,
                    .height_m = 0.5 * width_over_r * r_m,
                    .h_m = h_m,
                    .pressure_Pa = p_Pa,
                    .law = law,
                    .intact = [&](double x) { return std::abs(x) < r_m - 0.5 * h_m ? 0.0 : 1.0; }});
-  const double rise_s = 120 * r_m / c_S(), hold_s = 60 * r_m / c_S();
+  const double rise_s = 120 * r_m / c_S, hold_s = 60 * r_m / c_S;
   Arrest arrest;
   const auto half_length = [&] { return slip_contour_m(body, 0.5 * law.d_c_m, r_m - 1.5 * h_m) / r_m; };
   double before_last = 0;
@@ -207,17 +190,15 @@ constexpr double half_window = 0.1;  ///< in t_c, for speeds
 
 /// Speeds in the middles of the steps, places at their ends.
 struct PathInTheory {
-  Curve place{"theory", Curve::Kind::theory, {}, {}}, speed{"theory", Curve::Kind::theory, {}, {}};
+  Curve place{"theory", Curve::Kind::theory}, speed{"theory", Curve::Kind::theory};
 
   PathInTheory() {
     double x = 0;
     for (int j = 0; j < static_cast<int>(run_end / path_step); ++j) {
-      const double v = speed_at(1 / ((j + 0.5) * path_step)) / c_S();
-      speed.x.push_back((j + 0.5) * path_step);
-      speed.y.push_back(v);
+      const double v = speed_at(1 / ((j + 0.5) * path_step)) / c_S;
+      speed.add((j + 0.5) * path_step, v);
       x += v * path_step;
-      place.x.push_back((j + 1) * path_step);
-      place.y.push_back(x);
+      place.add((j + 1) * path_step, x);
     }
   }
   double place_at(double t) const {
@@ -263,13 +244,13 @@ void check_path(const Runs& runs, const PathInTheory& theory, Outcome& outcome) 
   for (const double t : {1.5, 2.0, 2.5}) {
     outcome.checks.push_back(check_of_short_zone(
         runs, fmt::format("tip speed over c_S at {} t_c", t),
-        [&](const Run& r) { return r.speed_at(t, half_window); }, speed_at(1 / t) / c_S()));
+        [&](const Run& r) { return r.speed_at(t, half_window); }, speed_at(1 / t) / c_S));
     // The path before is left out: while the tip is slow the zone is not short.
     constexpr double from = 1.5;
     if (t > from)
       outcome.checks.push_back(check_of_short_zone(
           runs, fmt::format("way of the tip over c_S t_c from {} to {} t_c", from, t),
-          [&](const Run& r) { return r.place_at(t) - r.place_at(from); },
+          [&](const Run& r) { return r.place.value_at(t) - r.place.value_at(from); },
           theory.place_at(t) - theory.place_at(from)));
   }
 }
@@ -278,13 +259,11 @@ void draw_path(const Runs& runs, const PathInTheory& theory, Outcome& outcome) {
   Chart path{.x_label = "time / t_c", .y_label = "tip / (c_S t_c)", .curves = {theory.place}};
   Chart speed{.x_label = "time / t_c", .y_label = "tip speed / c_S", .curves = {theory.speed}};
   for (const auto& r : runs.fine) {
-    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}};
+    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone)};
     Curve speeds = places;
     for (double t = 0.3; t < run_end - half_window; t += 0.1) {
-      places.x.push_back(t);
-      places.y.push_back(r.place_at(t));
-      speeds.x.push_back(t);
-      speeds.y.push_back(r.speed_at(t, half_window));
+      places.add(t, r.place.value_at(t));
+      speeds.add(t, r.speed_at(t, half_window));
     }
     path.curves.push_back(std::move(places));
     speed.curves.push_back(std::move(speeds));
@@ -301,21 +280,19 @@ void growth_of_a_long_crack(bool full, Outcome& outcome) {
 }
 
 Curve half_lengths_at_rest() {
-  Curve rest{"theory", Curve::Kind::theory, {}, {}};
+  Curve rest{"theory", Curve::Kind::theory};
   for (double load = 1; load <= final_load + 1e-9; load += 0.02) {
-    rest.x.push_back(load);
-    rest.y.push_back(half_length_at_rest(load));
+    rest.add(load, half_length_at_rest(load));
   }
   return rest;
 }
 
 Curve half_lengths(const Arrest& arrest, double size) {
-  Curve points{fmt::format("zone r/{}", size), Curve::Kind::program, {}, {}};
+  Curve points{fmt::format("zone r/{}", size)};
   const std::size_t every = arrest.load.size() / 40;
   for (std::size_t k = every; k < arrest.load.size(); k += every) {
     if (arrest.load[k] < 0.8) continue;
-    points.x.push_back(arrest.load[k]);
-    points.y.push_back(arrest.half_length[k]);
+    points.add(arrest.load[k], arrest.half_length[k]);
   }
   return points;
 }
@@ -331,15 +308,15 @@ void slow_growth_and_arrest(bool full, Outcome& outcome) {
     const auto arrest = grow_and_stop(size, width);
     // The edges' part goes with (r/width)^2.
     if (size == sizes[0]) edges = (arrest.half_length_at_end - narrower) / -3;
-    outcome.checks.push_back(
-        {fmt::format("half-length over r at rest, {} times the first load, zone r/{}", final_load, size), "",
-         arrest.half_length_at_end, half_length_at_rest(final_load), 1 / size + std::abs(edges),
-         fmt::format("the tip is somewhere in its zone; the edges' part, {:.2g}", edges)});
+    outcome.check(
+        fmt::format("half-length over r at rest, {} times the first load, zone r/{}", final_load, size),
+        arrest.half_length_at_end, half_length_at_rest(final_load), 1 / size + std::abs(edges),
+        fmt::format("the tip is somewhere in its zone; the edges' part, {:.2g}", edges));
     last_growth = arrest.last_growth;
     slow.curves.push_back(half_lengths(arrest, size));
   }
-  outcome.checks.push_back({"growth over r in the second half of the hold", "", last_growth, 0,
-                            0.25 / sizes.back(), "one element"});
+  outcome.check("growth over r in the second half of the hold", last_growth, 0, 0.25 / sizes.back(),
+                "one element");
   outcome.charts.push_back(std::move(slow));
 }
 

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
-#include "interface/friction/velocity_weakening.hpp"
 #include "stability/modes.hpp"
-#include "verification/extrapolation.hpp"
+#include "verification/body.hpp"
 #include "verification/problems.hpp"
 #include "verification/sliding.hpp"
 
@@ -21,21 +20,15 @@ constexpr double length_m = 0.1;
 constexpr double k_per_m = 2 * std::numbers::pi / length_m;
 constexpr double p_Pa = 1e6, V_m_per_s = 0.1;
 
-const solid::Material& material() {
-  static const solid::Material m{.stiffness_damping_s = 0};
-  return m;
-}
-
 double rate_unit_per_s() {
-  return k_per_m * solid::shear_speed_m_per_s(material());
+  return k_per_m * solid::shear_speed_m_per_s(undamped);
 }
 
-/// A way in which friction answers, and the order in h of the program's error with it.
+/// A way in which friction answers, and the orders in h of the program's error with it.
 struct Response {
   const char* name;
   interface::ContactModel (*contact)(double mu);
-  int order;
-  int next_order;
+  int order, next_order;
 };
 
 interface::ContactModel at_once(double mu) {
@@ -43,12 +36,10 @@ interface::ContactModel at_once(double mu) {
 }
 
 /// mu at the speed V falls with it by 0.3 of the radiation damping, |mu'| p = 0.3 G/c_S.
-interface::ContactModel weakening(double mu) {
+interface::ContactModel falling(double mu) {
   const double slope =
-      0.3 * solid::shear_modulus_Pa(material()) / (solid::shear_speed_m_per_s(material()) * p_Pa);
-  const double drop = slope * V_m_per_s * std::numbers::e;  // the law's speed is V
-  const double mu_k = mu - drop / std::numbers::e;
-  return {interface::VelocityWeakening{mu_k + drop, mu_k, drop * V_m_per_s * V_m_per_s}};
+      0.3 * solid::shear_modulus_Pa(undamped) / (solid::shear_speed_m_per_s(undamped) * p_Pa);
+  return weakening(mu, V_m_per_s, slope);
 }
 
 /// The strength follows with the time 1/(k c_S).
@@ -57,7 +48,7 @@ interface::ContactModel delayed(double mu) {
 }
 
 constexpr std::array<Response, 3> responses = {{{"constant mu", at_once, 2, 4},
-                                                {"mu falls with speed", weakening, 2, 3},
+                                                {"mu falls with speed", falling, 2, 3},
                                                 {"strength delayed", delayed, 2, 3}}};
 
 /// s/(k c_S) of the mode that grows; at mu = 1 of the constant law, of the neutral one.
@@ -65,25 +56,20 @@ Complex mode(const interface::ContactModel& contact) {
   const auto sliding = stability::uniform_sliding(contact.law, V_m_per_s, p_Pa, contact.regularisation);
   if (sliding.mu == 1 && sliding.slope_s_per_m == 0 && sliding.relaxed == interface::Relaxed::none)
     return {0, -std::numbers::sqrt2};
-  const auto fastest = stability::fastest_growing_mode(material(), sliding, k_per_m);
+  const auto fastest = stability::fastest_growing_mode(undamped, sliding, k_per_m);
   return fastest ? fastest->s_per_s / rate_unit_per_s() : Complex{std::nan(""), 0};
 }
 
-// Finer meshes carry shorter waves, whose growth would lift rounding up to the wave within the run: e-fold
-// pi elements (end k c_S) (growth/k c_S)/2 pi times, 22 at mu = 2 and 24 at mu = 1.3.
-constexpr int finest = 64, finest_for_order = 128;
-
 /// The rate with which the program carries a mode.
 Complex carried(const interface::ContactModel& contact, Complex p, int elements) {
-  return simulate({.bodies = material(),
-                   .contact = contact,
-                   .pressure_Pa = p_Pa,
-                   .speed_m_per_s = V_m_per_s,
-                   .wavenumber_per_m = k_per_m,
-                   .s_per_s = p * rate_unit_per_s(),
-                   .elements_per_wave = elements,
-                   .end_s = 2 / rate_unit_per_s()})
-             .rate_per_s() /
+  return carried_rate_per_s({.bodies = undamped,
+                             .contact = contact,
+                             .pressure_Pa = p_Pa,
+                             .speed_m_per_s = V_m_per_s,
+                             .wavenumber_per_m = k_per_m,
+                             .s_per_s = p * rate_unit_per_s(),
+                             .elements_per_wave = elements,
+                             .end_s = 2 / rate_unit_per_s()}) /
          rate_unit_per_s();
 }
 
@@ -103,35 +89,21 @@ RateCurves checked(const Response& response, bool full, Outcome& outcome) {
     const auto contact = response.contact(mu);
     const Complex p = mode(contact);
     if (std::isnan(p.real())) continue;
-    std::array<Complex, 3> at;
-    for (int level = 0; level < 3; ++level) at[level] = carried(contact, p, finest >> (2 - level));
-    const auto [rate, uncertainty] = limit(at, response.order, response.next_order);
+    const auto rate = check_mode(
+        fmt::format("{}, mu = {}", response.name, mu),
+        [&](int elements) { return carried(contact, p, elements); }, p, response.order, response.next_order,
+        outcome);
     rates.add(mu, rate.real(), -rate.imag());
-    const auto reason = fmt::format(
-        "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
-        "per wave",
-        finest / 4, finest / 2, finest);
-    outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, mu = {}", response.name, mu), "",
-                              rate.real(), p.real(), uncertainty, reason});
-    outcome.checks.push_back({fmt::format("phase speed over c_S, {}, mu = {}", response.name, mu), "",
-                              -rate.imag(), -p.imag(), uncertainty, reason});
   }
   return rates;
 }
 
-/// Errors over k h, their order checked.
 Curve errors(const Response& response, Outcome& outcome) {
-  Curve error{response.name, Curve::Kind::program, {}, {}};
-  const Complex p = mode(response.contact(1.3));
-  for (int elements = 16; elements <= finest_for_order; elements *= 2) {
-    error.x.push_back(2 * std::numbers::pi / elements);
-    error.y.push_back(std::abs(carried(response.contact(1.3), p, elements) - p));
-  }
-  const std::size_t n = error.y.size();
-  outcome.checks.push_back({fmt::format("order of the error in h, {}, mu = 1.3", response.name), "",
-                            std::log2(error.y[n - 2] / error.y[n - 1]), static_cast<double>(response.order),
-                            0.3, "terms of higher order on meshes this coarse"});
-  return error;
+  const auto contact = response.contact(1.3);
+  const Complex p = mode(contact);
+  return check_order(
+      response.name, fmt::format("{}, mu = 1.3", response.name),
+      [&](int elements) { return std::abs(carried(contact, p, elements) - p); }, response.order, outcome);
 }
 
 }  // namespace

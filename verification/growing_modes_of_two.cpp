@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
-#include "interface/friction/velocity_weakening.hpp"
 #include "stability/modes.hpp"
 #include "stability/verdict.hpp"
-#include "verification/extrapolation.hpp"
 #include "verification/problems.hpp"
 #include "verification/sliding.hpp"
 
@@ -54,11 +52,9 @@ interface::ContactModel constant(double mu) {
 }
 
 /// mu at the speed V falls with it by half of the pair's radiation damping.
-interface::ContactModel weakening(const Pair& pair, double mu) {
+interface::ContactModel falling(const Pair& pair, double mu) {
   const double slope = 0.5 * stability::radiation_damping_Pa_s_per_m(pair.bodies) / p_Pa;
-  const double drop = slope * V_m_per_s * std::numbers::e;  // the law's speed is V
-  const double mu_k = mu - drop / std::numbers::e;
-  return {interface::VelocityWeakening{mu_k + drop, mu_k, drop * V_m_per_s * V_m_per_s}};
+  return weakening(mu, V_m_per_s, slope);
 }
 
 /// s of the fastest mode; some mode grows in all cases here.
@@ -69,19 +65,15 @@ Complex mode_per_s(const Pair& pair, const interface::ContactModel& contact) {
 
 Complex carried_per_s(const Pair& pair, const interface::ContactModel& contact, Complex s_per_s,
                       int elements) {
-  return simulate({.bodies = pair.bodies,
-                   .contact = contact,
-                   .pressure_Pa = p_Pa,
-                   .speed_m_per_s = V_m_per_s,
-                   .wavenumber_per_m = k_per_m,
-                   .s_per_s = s_per_s,
-                   .elements_per_wave = elements,
-                   .end_s = 2 / pair.rate_unit_per_s()})
-      .rate_per_s();
+  return carried_rate_per_s({.bodies = pair.bodies,
+                             .contact = contact,
+                             .pressure_Pa = p_Pa,
+                             .speed_m_per_s = V_m_per_s,
+                             .wavenumber_per_m = k_per_m,
+                             .s_per_s = s_per_s,
+                             .elements_per_wave = elements,
+                             .end_s = 2 / pair.rate_unit_per_s()});
 }
-
-// Waves of a few elements grow out of rounding, see growing_modes.cpp.
-constexpr int finest = 64, finest_for_order = 128;
 
 RateCurves in_theory(const Pair& pair, const char* label) {
   RateCurves rates(label, Curve::Kind::theory);
@@ -97,20 +89,10 @@ RateCurves in_theory(const Pair& pair, const char* label) {
 Complex checked(const Pair& pair, const char* response, const interface::ContactModel& contact, double mu,
                 Outcome& outcome) {
   const Complex s = mode_per_s(pair, contact);
-  std::array<Complex, 3> at;
-  for (int level = 0; level < 3; ++level)
-    at[level] = carried_per_s(pair, contact, s, finest >> (2 - level)) / pair.rate_unit_per_s();
-  const auto [rate, uncertainty] = limit(at, pair.order, pair.next_order);
-  const Complex expected = s / pair.rate_unit_per_s();
-  const auto reason = fmt::format(
-      "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
-      "per wave",
-      finest / 4, finest / 2, finest);
-  outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, {}, mu = {}", pair.name, response, mu),
-                            "", rate.real(), expected.real(), uncertainty, reason});
-  outcome.checks.push_back({fmt::format("phase speed over c_S, {}, {}, mu = {}", pair.name, response, mu), "",
-                            -rate.imag(), -expected.imag(), uncertainty, reason});
-  return rate;
+  return check_mode(
+      fmt::format("{}, {}, mu = {}", pair.name, response, mu),
+      [&](int elements) { return carried_per_s(pair, contact, s, elements) / pair.rate_unit_per_s(); },
+      s / pair.rate_unit_per_s(), pair.order, pair.next_order, outcome);
 }
 
 RateCurves checked(const Pair& pair, bool full, Outcome& outcome) {
@@ -120,23 +102,16 @@ RateCurves checked(const Pair& pair, bool full, Outcome& outcome) {
     rates.add(mu, rate.real(), -rate.imag());
   }
   for (const double mu : full ? std::vector{1.0, 1.3} : std::vector{1.3})
-    checked(pair, "mu falls with speed", weakening(pair, mu), mu, outcome);
+    checked(pair, "mu falls with speed", falling(pair, mu), mu, outcome);
   return rates;
 }
 
-/// Errors over k h, their order checked.
 Curve errors(const Pair& pair, Outcome& outcome) {
-  Curve error{pair.name, Curve::Kind::program, {}, {}};
   const Complex s = mode_per_s(pair, constant(1.3));
-  for (int elements = 16; elements <= finest_for_order; elements *= 2) {
-    error.x.push_back(2 * std::numbers::pi / elements);
-    error.y.push_back(std::abs(carried_per_s(pair, constant(1.3), s, elements) - s) / pair.rate_unit_per_s());
-  }
-  const std::size_t n = error.y.size();
-  outcome.checks.push_back({fmt::format("order of the error in h, {}, constant mu = 1.3", pair.name), "",
-                            std::log2(error.y[n - 2] / error.y[n - 1]), static_cast<double>(pair.order), 0.3,
-                            "terms of higher order on meshes this coarse"});
-  return error;
+  const auto error = [&](int elements) {
+    return std::abs(carried_per_s(pair, constant(1.3), s, elements) - s) / pair.rate_unit_per_s();
+  };
+  return check_order(pair.name, fmt::format("{}, constant mu = 1.3", pair.name), error, pair.order, outcome);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "interface/friction/coulomb.hpp"
-#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
@@ -97,14 +96,13 @@ struct Seismogram {
   std::array<std::vector<double>, 3> u_x_m, u_y_m;  ///< by distance
 };
 
-Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m, const solid::Material& material) {
+Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m) {
   const auto mesh = mesh::make_plate(
       {.width_m = width_m, .height_m = height_m, .element_size_m = h_m, .corner = mesh::Corner::none});
-  const auto steps = steps_to(end_s, h_m, coarsest_h_m, material);
-  motion::Stepper stepper(mesh, material, {interface::Coulomb{}},
-                          plain_stepping(factor_of_step(mesh, material, steps.step_s)));
-  const auto state = start(stepper, mesh, {.u_y_m = [](mesh::Node, double) { return lift_m; }});
-  motion::Recorder recorder(state, 1, 0);
+  const auto steps = steps_to(end_s, h_m, coarsest_h_m);
+  motion::Stepper stepper(mesh, undamped, {interface::Coulomb{}},
+                          plain_stepping(factor_of_step(mesh, steps.step_s)));
+  start(stepper, mesh, {.u_y_m = [](mesh::Node, double) { return lift_m; }});
   const auto at = [&](double x) { return static_cast<int>(std::lround((0.5 * width_m + x) / h_m)); };
   Seismogram s;
   std::vector<double> none(mesh.interface_nodes.size(), 0.0), traction = none;
@@ -112,7 +110,7 @@ Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m, const s
     traction[at(0)] = force_N_per_m * course(stepper.time_s()) / h_m;
     if (load == normal) traction[at(0)] *= -1;  // p0 presses down
     stepper.set_prestress(load == tangential ? traction : none, load == normal ? traction : none);
-    stepper.advance(recorder);
+    advance(stepper);
     s.t_s.push_back(stepper.time_s());
     for (std::size_t k = 0; k < distances_m.size(); ++k) {
       const auto n = mesh.grid.node(at(distances_m[k]), 0);
@@ -127,11 +125,10 @@ Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m, const s
 
 Outcome lamb(Effort effort) {
   Outcome outcome;
-  const solid::Material material{.stiffness_damping_s = 0};
-  const HalfPlane half_plane(material);
+  const HalfPlane half_plane(undamped);
   const std::vector<double> sizes_m = effort == Effort::quick ? std::vector{1e-3, 0.5e-3, 0.25e-3}
                                                               : std::vector{1e-3, 0.5e-3, 0.25e-3, 0.125e-3};
-  const double end_s = distances_m.back() / solid::rayleigh_speed_m_per_s(material) + pulse_s;
+  const double end_s = distances_m.back() / solid::rayleigh_speed_m_per_s(undamped) + pulse_s;
   Chart errors{.x_label = "h (mm)", .y_label = "relative error", .log_x = true, .log_y = true};
   for (const Load load : {tangential, normal}) {
     const char* name = load == tangential ? "tangential" : "normal";
@@ -139,15 +136,15 @@ Outcome lamb(Effort effort) {
     std::array<std::vector<double>, 2> error;  // of u_x, u_y
     Chart chart{.x_label = "t (us)", .y_label = fmt::format("displacement (um), {} load", name)};
     for (const double h_m : sizes_m) {
-      const auto s = run(load, h_m, end_s, sizes_m.front(), material);
+      const auto s = run(load, h_m, end_s, sizes_m.front());
       const std::size_t every = s.t_s.size() / 50;
       std::array<double, 2> off{}, all{};
       for (std::size_t k = 0; k < distances_m.size(); ++k) {
         std::array<Curve, 2> theory, program;
         for (const int c : {0, 1}) {
           const auto label = fmt::format("{} at {:.0f} mm", c == 0 ? "u_x" : "u_y", 1e3 * distances_m[k]);
-          theory[c] = {k + c == 0 ? "theory" : "", Curve::Kind::theory, {}, {}};
-          program[c] = {label, Curve::Kind::program, {}, {}};
+          theory[c] = {k + c == 0 ? "theory" : "", Curve::Kind::theory};
+          program[c] = {label};
         }
         for (std::size_t i = every - 1; i < s.t_s.size(); i += every) {
           const double x = distances_m[k], t = s.t_s[i];
@@ -171,8 +168,8 @@ Outcome lamb(Effort effort) {
     }
     for (const int c : {0, 1}) {
       const auto of = fmt::format("{}, {} load", c == 0 ? "u_x" : "u_y", name);
-      outcome.checks.push_back({fmt::format("order of the error of {}", of), "",
-                                observed_order(h_mm, error[c]), 2, 0.1, "the error's next term"});
+      outcome.check(fmt::format("order of the error of {}", of), observed_order(h_mm, error[c]), 2, 0.1,
+                    "the error's next term");
       const auto last = error[c].size() - 1;
       errors.curves.push_back({of, Curve::Kind::program, h_mm, error[c]});
       if (load == normal && c == 1) errors.curves.push_back(order_line(2, h_mm, error[c][last]));

@@ -30,12 +30,12 @@ LoadedBody::LoadedBody(const LoadedPlane& plane)
     : plane_(plane),
       mesh_(make_mesh(plane)),
       x_m_(places_m(mesh_, plane.width_m)),
-      stepper_(mesh_, plane.material, {plane.law, constant_pressure}, plain_stepping()),
-      recorder_(start(stepper_, mesh_,
-                      {.contact = statics::Contact::stick,
-                       .p_Pa = plane.pressure_Pa,
-                       .loads = {.intact = plane.intact ? at(plane.intact) : std::vector<double>{}}}),
-                plane.law.mu_s, 0) {}
+      stepper_(mesh_, undamped, {plane.law, constant_pressure}, plain_stepping()) {
+  start(stepper_, mesh_,
+        {.contact = statics::Contact::stick,
+         .p_Pa = plane.pressure_Pa,
+         .loads = {.intact = plane.intact ? at(plane.intact) : std::vector<double>{}}});
+}
 
 std::vector<double> LoadedBody::at(const std::function<double(double)>& f) const {
   std::vector<double> values;
@@ -47,9 +47,9 @@ void LoadedBody::load(const std::function<double(double)>& t0_Pa) {
   stepper_.set_prestress(at(t0_Pa), std::vector<double>(x_m_.size(), plane_.pressure_Pa));
 }
 
-double sliding_stiffness_Pa(const solid::Material& material) {
-  const double G = solid::shear_modulus_Pa(material);
-  return 2 * G / (1 + G / solid::longitudinal_modulus_Pa(material));
+double sliding_stiffness_Pa() {
+  const double G = solid::shear_modulus_Pa(undamped);
+  return 2 * G / (1 + G / solid::longitudinal_modulus_Pa(undamped));
 }
 
 }  // namespace slipfront::verification

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "interface/friction/slip_weakening.hpp"
-#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 
 namespace slipfront::verification {
@@ -13,7 +12,6 @@ namespace slipfront::verification {
 /// A body at rest on the plane under uniform pressure, with edges that let waves out. Its friction weakens
 /// with slip and does not see changes of pressure: strength mu(slip) p, p the pressure at the start.
 struct LoadedPlane {
-  solid::Material material;
   double width_m = 0, height_m = 0, h_m = 0;
   double pressure_Pa = 0;
   interface::SlipWeakening law;
@@ -28,13 +26,11 @@ class LoadedBody {
   /// Shear traction on the interface, by place.
   void load(const std::function<double(double x_m)>& t0_Pa);
 
-  void advance() { stepper_.advance(recorder_); }
-  const motion::Stepper& stepper() const { return stepper_; }
+  void advance() { verification::advance(stepper_); }
   double time_s() const { return stepper_.time_s(); }
   const interface::Interface& interface_state() const { return stepper_.interface_state(); }
   const std::vector<double>& x_m() const { return x_m_; }  ///< [interface nodes]
   double slip_m(std::size_t i) const { return stepper_.u_m().x[mesh_.interface_nodes[i]]; }
-  const record::SlipRecord& record() const { return recorder_.record(); }
 
  private:
   std::vector<double> at(const std::function<double(double)>& f) const;
@@ -42,10 +38,9 @@ class LoadedBody {
   mesh::Mesh mesh_;
   std::vector<double> x_m_;
   motion::Stepper stepper_;
-  motion::Recorder recorder_;
 };
 
 /// Shear stiffness of a half-space on the plane against slip: t = -Y0 |k| u at the wavenumber k.
-double sliding_stiffness_Pa(const solid::Material& material);
+double sliding_stiffness_Pa();
 
 }  // namespace slipfront::verification

@@ -7,9 +7,7 @@
 
 #include "base/error.hpp"
 #include "interface/friction/coulomb.hpp"
-#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
-#include "verification/join.hpp"
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
@@ -43,15 +41,14 @@ struct Depth {
 /// function of their four coefficients.
 struct LayerWave {
   double omega_rad_per_s = 0;
-  solid::Material material;
   Eigen::Vector4d coefficient = Eigen::Vector4d::Zero();
 
   Depth longitudinal() const {
-    const double c = solid::longitudinal_speed_m_per_s(material);
+    const double c = solid::longitudinal_speed_m_per_s(undamped);
     return {std::pow(omega_rad_per_s / c, 2) - k_rad_per_m * k_rad_per_m};
   }
   Depth shear() const {
-    const double c = solid::shear_speed_m_per_s(material);
+    const double c = solid::shear_speed_m_per_s(undamped);
     return {std::pow(omega_rad_per_s / c, 2) - k_rad_per_m * k_rad_per_m};
   }
   /// Rows U, V, U', V' at a height.
@@ -68,7 +65,7 @@ struct LayerWave {
   /// Rows of sigma_xy and sigma_yy at a height, without the functions of x and t.
   Eigen::Matrix<double, 2, 4> stress(double y) const {
     const auto m = motion(y);
-    const double G = solid::shear_modulus_Pa(material), P = solid::longitudinal_modulus_Pa(material);
+    const double G = solid::shear_modulus_Pa(undamped), P = solid::longitudinal_modulus_Pa(undamped);
     Eigen::Matrix<double, 2, 4> s;
     s.row(0) = G * (m.row(2) - k_rad_per_m * m.row(1));
     s.row(1) = P * m.row(3) + (P - 2 * G) * k_rad_per_m * m.row(0);
@@ -97,13 +94,13 @@ struct LayerWave {
 };
 
 /// The n-th frequency at which the layer has a free wave of wavenumber k, to rounding.
-LayerWave layer_wave(Edge edge, int n, const solid::Material& material) {
-  LayerWave wave{0, material};
+LayerWave layer_wave(Edge edge, int n) {
+  LayerWave wave;
   const auto determinant = [&](double omega) {
     wave.omega_rad_per_s = omega;
     return wave.conditions(edge).determinant();
   };
-  const double step = 0.01 * k_rad_per_m * solid::shear_speed_m_per_s(material);
+  const double step = 0.01 * k_rad_per_m * solid::shear_speed_m_per_s(undamped);
   double low = 10 * step;
   for (int found = 0;; low += step) {
     if (determinant(low) * determinant(low + step) < 0 && ++found == n) break;
@@ -134,9 +131,8 @@ struct Errors {
 
 /// Relative change of the frequency by the join above `rows` rows of cells: verification/subcycling.md.
 double shift_by_join(const LayerWave& wave, double h_m, double step_s, const motion::TimeStepping& stepping) {
-  const auto& material = wave.material;
-  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
-  const double G = solid::shear_modulus_Pa(material), P = solid::longitudinal_modulus_Pa(material);
+  const double c_L = solid::longitudinal_speed_m_per_s(undamped), c_S = solid::shear_speed_m_per_s(undamped);
+  const double G = solid::shear_modulus_Pa(undamped), P = solid::longitudinal_modulus_Pa(undamped);
   const Eigen::Vector2d stress = wave.stress((stepping.interface_rows + 0.5) * h_m) * wave.coefficient;
   const int n = stepping.interface_substeps;
   const double join = thinning_of_join(c_S * step_s / h_m, n) * stress(0) * stress(0) / G +
@@ -148,7 +144,7 @@ double shift_by_join(const LayerWave& wave, double h_m, double step_s, const mot
     inertia += side_m / n_points * (m(0) * m(0) + m(1) * m(1));
   }
   const double omega = wave.omega_rad_per_s;
-  return 0.5 * h_m * join / (material.density_kg_per_m3 * omega * omega * inertia);
+  return 0.5 * h_m * join / (undamped.density_kg_per_m3 * omega * omega * inertia);
 }
 
 /// Of v - u over u.
@@ -159,14 +155,6 @@ double relative_distance(const solid::Field& u, const solid::Field& v, const sol
     norm += std::pow(u.x[n] - rest.x[n], 2) + std::pow(u.y[n] - rest.y[n], 2);
   }
   return std::sqrt(difference / norm);
-}
-
-mesh::Mesh layer_mesh(double h_m) {
-  return mesh::make_plate({.width_m = side_m,
-                           .height_m = side_m,
-                           .element_size_m = h_m,
-                           .corner = mesh::Corner::none,
-                           .sides = mesh::Sides::periodic});
 }
 
 /// In the L2 norm, of numbers one by one.
@@ -180,15 +168,15 @@ struct RelativeError {
 };
 
 Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double coarsest_h_m, bool subcycled) {
-  const auto mesh = layer_mesh(h_m);
-  const auto steps = steps_to(time_s, h_m, coarsest_h_m, wave.material);
-  const double factor = factor_of_step(mesh, wave.material, steps.step_s);
+  const auto mesh = layer(side_m, side_m, h_m);
+  const auto steps = steps_to(time_s, h_m, coarsest_h_m);
+  const double factor = factor_of_step(mesh, steps.step_s);
   motion::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
   stepping.step_factor = factor;
-  motion::Stepper stepper(mesh, wave.material, {interface::Coulomb{edge == Edge::stuck ? 10.0 : 0.0}},
+  motion::Stepper stepper(mesh, undamped, {interface::Coulomb{edge == Edge::stuck ? 10.0 : 0.0}},
                           subcycled ? stepping : plain_stepping(factor));
   // At rest: lifted, or pressed down uniformly.
-  const double strain = edge == Edge::free ? 0 : pressure_Pa / solid::longitudinal_modulus_Pa(wave.material);
+  const double strain = edge == Edge::free ? 0 : pressure_Pa / solid::longitudinal_modulus_Pa(undamped);
   const auto u_x = [&](mesh::Node n, double time) {
     return mesh.y_m[n] > side_m - 0.5 * h_m ? 0 : wave.u_x(mesh.x_m[n], mesh.y_m[n], time);
   };
@@ -197,18 +185,17 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
     if (mesh.y_m[n] > side_m - 0.5 * h_m) return rest;
     return rest + wave.u_y(mesh.x_m[n], mesh.y_m[n], time);
   };
-  const auto state = start(stepper, mesh,
-                           {.u_x_m = u_x,
-                            .u_y_m = u_y,
-                            .contact = edge == Edge::free           ? statics::Contact::open
-                                       : edge == Edge::frictionless ? statics::Contact::slip
-                                                                    : statics::Contact::stick,
-                            .p_Pa = edge == Edge::free ? 0 : pressure_Pa});
-  motion::Recorder recorder(state, 10, 0);
+  start(stepper, mesh,
+        {.u_x_m = u_x,
+         .u_y_m = u_y,
+         .contact = edge == Edge::free           ? statics::Contact::open
+                    : edge == Edge::frictionless ? statics::Contact::slip
+                                                 : statics::Contact::stick,
+         .p_Pa = edge == Edge::free ? 0 : pressure_Pa});
   RelativeError u, v, t, p;
   const Eigen::Vector2d stress = wave.stress(0) * wave.coefficient;
   for (int step = 0; step < steps.n; ++step) {
-    stepper.advance(recorder);
+    advance(stepper);
     const double then = stepper.time_s() - stepper.substep_s();  // of the last contact update
     for (std::size_t i = 0; i < mesh.interface_nodes.size() && edge != Edge::free; ++i) {
       const double phase = k_rad_per_m * mesh.x_m[mesh.interface_nodes[i]];
@@ -242,7 +229,6 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
 
 Outcome manufactured(Effort effort) {
   Outcome outcome;
-  const solid::Material material{.stiffness_damping_s = 0};
   const std::vector<int> columns =
       effort == Effort::quick ? std::vector{32, 64, 128} : std::vector{32, 64, 128, 256};
   const auto chart_of = [](const char* y_label) {
@@ -252,7 +238,7 @@ Outcome manufactured(Effort effort) {
   for (const auto& [edge, name] :
        {std::pair{Edge::free, "free"}, std::pair{Edge::frictionless, "frictionless"},
         std::pair{Edge::stuck, "stuck"}}) {
-    const auto wave = layer_wave(edge, 2, material);
+    const auto wave = layer_wave(edge, 2);
     constexpr double n_periods = 3.125;  // where u and v are as far from their zeros
     const double time = n_periods * 2 * std::numbers::pi / wave.omega_rad_per_s;
     std::vector<double> h, u, v, t, p, distance, expected;
@@ -264,11 +250,11 @@ Outcome manufactured(Effort effort) {
       const auto layered = run(wave, edge, time, h_m, coarsest, true);
       distance.push_back(relative_distance(e.u_end_m, layered.u_end_m, e.rest_m));
       expected.push_back(wave.omega_rad_per_s * time *
-                         shift_by_join(wave, h_m, steps_to(time, h_m, coarsest, material).step_s, {}));
+                         shift_by_join(wave, h_m, steps_to(time, h_m, coarsest).step_s, {}));
     }
     const auto add = [&, name = name](const char* of, const std::vector<double>& error) {
-      outcome.checks.push_back({fmt::format("order of the error of {}, {} edge", of, name), "",
-                                observed_order(h, error), 2, 0.1, "the error's next term"});
+      outcome.check(fmt::format("order of the error of {}, {} edge", of, name), observed_order(h, error), 2,
+                    0.1, "the error's next term");
       if (*of != 'v')  // which would lie on u
         errors.curves.push_back({fmt::format("{}, {}", of, name), Curve::Kind::program, h, error});
     };
@@ -278,10 +264,9 @@ Outcome manufactured(Effort effort) {
     if (edge != Edge::free) add("p", p);
     if (edge == Edge::stuck) errors.curves.push_back(order_line(2, h, u.back()));
     if (edge == Edge::free) continue;  // no stress at the join either
-    outcome.checks.push_back(
-        {fmt::format("change of u by sub-cycling over u, h = {:.4f} mm, {} edge", h.back(), name), "",
-         distance.back(), expected.back(), expected.back() * 4 / (wave.omega_rad_per_s * time),
-         "other waves that the join scatters, which do not grow with time"});
+    outcome.check(fmt::format("change of u by sub-cycling over u, h = {:.4f} mm, {} edge", h.back(), name),
+                  distance.back(), expected.back(), expected.back() * 4 / (wave.omega_rad_per_s * time),
+                  "other waves that the join scatters, which do not grow with time");
     joined.curves.push_back({fmt::format("{}, theory of the join", name), Curve::Kind::theory, h, expected});
     joined.curves.push_back({fmt::format("{}, program", name), Curve::Kind::program, h, distance});
   }

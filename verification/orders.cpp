@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solid/operator.hpp"
+#include "verification/body.hpp"
 
 namespace slipfront::verification {
 
@@ -25,13 +26,13 @@ Curve order_line(int order, const std::vector<double>& h_m, double last_error) {
   return line;
 }
 
-double factor_of_step(const mesh::Mesh& mesh, const solid::Material& material, double step_s) {
-  const double omega = solid::largest_frequency_rad_per_s(solid::make_operator(mesh, material));
-  return step_s / solid::stable_step_s(omega, material.stiffness_damping_s);
+double factor_of_step(const mesh::Mesh& mesh, double step_s) {
+  const double omega = solid::largest_frequency_rad_per_s(solid::make_operator(mesh, undamped));
+  return step_s / solid::stable_step_s(omega, 0);
 }
 
-Steps steps_to(double time_s, double h_m, double coarsest_h_m, const solid::Material& material) {
-  const double c_L = solid::longitudinal_speed_m_per_s(material);
+Steps steps_to(double time_s, double h_m, double coarsest_h_m) {
+  const double c_L = solid::longitudinal_speed_m_per_s(undamped);
   const auto refinement = static_cast<int>(std::lround(coarsest_h_m / h_m));
   const int n = refinement * static_cast<int>(std::ceil(time_s * c_L / (0.85 * coarsest_h_m)));
   return {n, time_s / n};

@@ -3,8 +3,8 @@
 
 #include <array>
 #include <complex>
+#include <functional>
 #include <string>
-#include <vector>
 
 #include "interface/interface.hpp"
 #include "solid/material.hpp"
@@ -14,35 +14,6 @@
 namespace slipfront::verification {
 
 using Complex = std::complex<double>;
-
-struct Displacement {
-  Complex x, y;
-};
-
-/// Displacements of a wave exp(i k x + s t) in an undamped body y > 0: two potentials that fall from the
-/// interface and, in a layer whose upper edge is held, two that fall from there.
-class WaveShape {
- public:
-  /// In a half-space whose edge moves by this much.
-  WaveShape(const solid::Material& material, double wavenumber_per_m, Complex s_per_s,
-            const Displacement& edge);
-  /// In a layer that stays on the plane (u_y = 0 at y = 0), scaled to u_x = 1 at y = 0.
-  WaveShape(const solid::Material& material, double wavenumber_per_m, Complex s_per_s, double height_m);
-
-  Complex u_x(double y_m) const { return y_m == 0 ? edge_.x : sum(u_x_, y_m); }
-  Complex u_y(double y_m) const { return y_m == 0 ? edge_.y : sum(u_y_, y_m); }
-  Complex pressure_Pa_per_m() const { return pressure_; }  ///< on the interface
-
- private:
-  void set_potentials(const solid::Material& material, Complex s_per_s);
-  void set_amplitudes(const solid::Material& material, const std::array<Complex, 4>& amplitude);
-  Complex sum(const std::array<Complex, 4>& amplitude, double y_m) const;
-
-  double k_per_m_, height_m_;
-  Displacement edge_;
-  std::array<Complex, 4> rate_per_m_, u_x_, u_y_;  ///< of exp(rate (y - origin))
-  Complex pressure_;
-};
 
 /// A body that slides at speed V under uniform pressure, on the plane or on another body at rest, and a small
 /// wave on it.
@@ -58,30 +29,46 @@ struct SlidingWave {
   double end_s = 0;
 };
 
-/// Slip at the wavenumber over its value at time 0, its logarithm with the phase counted
-/// through.
-struct Growth {
-  std::vector<double> time_s;
-  std::vector<Complex> log_slip;
-  Complex rate_per_s() const;  ///< slope of the line of least squares
-};
-
 /// Growth rates and phase speeds over what they depend on.
 struct RateCurves {
   Curve growth, speed;
-  RateCurves(const std::string& label, Curve::Kind kind);
-  void add(double at, double growth_rate, double phase_speed);
+  RateCurves(const std::string& label, Curve::Kind kind) : growth{label, kind}, speed(growth) {}
+  void add(double at, double growth_rate, double phase_speed) {
+    growth.add(at, growth_rate);
+    speed.add(at, phase_speed);
+  }
 };
 struct RateCharts {
   Chart growth, speed;
-  RateCharts(const char* x_label, const char* growth_label, const char* speed_label);
+  RateCharts(const char* x_label, const char* growth_label, const char* speed_label)
+      : growth{.x_label = x_label, .y_label = growth_label},
+        speed{.x_label = x_label, .y_label = speed_label} {}
   /// Of the next curves of theory: one legend stands for all.
   const char* theory_label() const { return growth.curves.empty() ? "theory" : ""; }
-  void add(const RateCurves& curves);
+  void add(const RateCurves& curves) {
+    growth.curves.push_back(curves.growth);
+    speed.curves.push_back(curves.speed);
+  }
 };
 
-/// Simulates the wave. A half-space is as high as a longitudinal wave from its far edge needs to
-/// arrive at the end; a layer's height is rounded to whole elements beforehand.
-Growth simulate(const SlidingWave& wave);
+/// mu at this speed that falls with it.
+interface::ContactModel weakening(double mu, double speed_m_per_s, double slope_s_per_m);
+
+/// The program's rate of a mode on a mesh, in k c_S.
+using CarriedRate = std::function<Complex(int elements_per_wave)>;
+/// Checks the rate of a half-space's mode, in k c_S, extrapolated from 16, 32 and 64 elements per wave, and
+/// returns it. Finer meshes carry shorter waves, whose growth would lift rounding up to the wave within the
+/// run: e-fold pi elements (end k c_S) (growth/k c_S)/2 pi times, 22 at mu = 2 and 24 at mu = 1.3.
+/// @param order, next_order  in h of the program's error
+Complex check_mode(const std::string& what, const CarriedRate& carried, Complex expected, int order,
+                   int next_order, Outcome& outcome);
+/// Errors in k c_S over k h on meshes of 16 to 128 elements per wave, their order checked.
+Curve check_order(const std::string& label, const std::string& what,
+                  const std::function<double(int elements_per_wave)>& error, int order, Outcome& outcome);
+
+/// The rate with which the program carries the wave: slope, by least squares, of the logarithm of the slip at
+/// the wavenumber, with the phase counted through. A half-space is as high as a longitudinal wave from its
+/// far edge needs to arrive at the end; a layer's height is rounded to whole elements beforehand.
+Complex carried_rate_per_s(const SlidingWave& wave);
 
 }  // namespace slipfront::verification

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "verification/extrapolation.hpp"
 #include "verification/loaded_plane.hpp"
+#include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
 namespace slipfront::verification {
@@ -26,10 +26,8 @@ struct Patch {
 /// The patch has no strength, the interface around it more than enough. The traction rises as slowly as
 /// 40 a/c_S and waits as long again.
 Patch slip(double a_over_h, double width_over_a) {
-  const solid::Material material{.stiffness_damping_s = 0};
-  const double c_S = solid::shear_speed_m_per_s(material);
-  LoadedBody body({.material = material,
-                   .width_m = width_over_a * a_m,
+  const double c_S = solid::shear_speed_m_per_s(undamped);
+  LoadedBody body({.width_m = width_over_a * a_m,
                    .height_m = 0.5 * width_over_a * a_m,
                    .h_m = a_m / a_over_h,
                    .pressure_Pa = p_Pa,
@@ -57,7 +55,7 @@ Patch slip(double a_over_h, double width_over_a) {
 }
 
 double middle_in_theory_m() {
-  return drop_Pa / sliding_stiffness_Pa(solid::Material{}) * a_m;
+  return drop_Pa / sliding_stiffness_Pa() * a_m;
 }
 
 double ellipse(double x_over_a) {
@@ -66,10 +64,9 @@ double ellipse(double x_over_a) {
 
 Chart profile_in_theory() {
   Chart profile{.x_label = "x / a", .y_label = "slip Y0 / (a stress drop)"};
-  Curve theory{"theory", Curve::Kind::theory, {}, {}};
+  Curve theory{"theory", Curve::Kind::theory};
   for (int j = -100; j <= 100; ++j) {
-    theory.x.push_back(0.012 * j);
-    theory.y.push_back(ellipse(0.012 * j));
+    theory.add(0.012 * j, ellipse(0.012 * j));
   }
   profile.curves.push_back(std::move(theory));
   return profile;
@@ -84,32 +81,29 @@ struct EdgesPart {
 
   explicit EdgesPart(Outcome& outcome) {
     std::vector<double> at;
-    Curve edges{fmt::format("middle, h = a/{}", a_over_h), Curve::Kind::program, {}, {}};
+    Curve edges{fmt::format("middle, h = a/{}", a_over_h)};
     for (const double width : {8.0, 16.0, 32.0}) {
       at.push_back(slip(a_over_h, width).middle_m / middle_in_theory_m());
-      edges.x.push_back(1 / (width * width));
-      edges.y.push_back(at.back());
+      edges.add(1 / (width * width), at.back());
     }
     const auto edgeless = limit(at[0], at[1], at[2], 2, 4);
     part = at[1] - edgeless.value;
     uncertainty = edgeless.uncertainty;
-    Curve line{"a line through the two widest", Curve::Kind::theory, {}, {}};
+    Curve line{"a line through the two widest", Curve::Kind::theory};
     for (const double inverse_square : {0.0, edges.x.front()}) {
       const double slope = (at[1] - at[2]) / (edges.x[1] - edges.x[2]);
-      line.x.push_back(inverse_square);
-      line.y.push_back(at[2] + slope * (inverse_square - edges.x[2]));
+      line.add(inverse_square, at[2] + slope * (inverse_square - edges.x[2]));
     }
     chart.curves = {std::move(line), std::move(edges)};
-    outcome.checks.push_back({"edges' part of the slip: (8 a less 16 a) over (16 a less 32 a)", "",
-                              (at[0] - at[1]) / (at[1] - at[2]), 4, 1,
-                              "the next order, (a/width)^4, and what the dashpots leave of waves"});
+    outcome.check("edges' part of the slip: (8 a less 16 a) over (16 a less 32 a)",
+                  (at[0] - at[1]) / (at[1] - at[2]), 4, 1,
+                  "the next order, (a/width)^4, and what the dashpots leave of waves");
   }
 };
 
 /// The mesh's part: one domain, its edges' part taken off.
 struct MeshesPart {
-  Curve against_h{"middle", Curve::Kind::program, {}, {}},
-      rms{"rms over the patch", Curve::Kind::program, {}, {}};
+  Curve against_h{"middle"}, rms{"rms over the patch"};
   std::vector<double> middle;  ///< over theory
   double rest = 0;             ///< the largest, of Patch
 
@@ -117,39 +111,36 @@ struct MeshesPart {
     const auto patch = slip(a_over_h, 16);
     rest = std::max(rest, patch.rest);
     const double scale = (1 - edges_part / (patch.middle_m / middle_in_theory_m())) / middle_in_theory_m();
-    Curve points{fmt::format("h = a/{}", a_over_h), Curve::Kind::program, {}, {}};
+    Curve points{fmt::format("h = a/{}", a_over_h)};
     double square = 0;
     int inside = 0;
     for (std::size_t i = 0; i < patch.x_m.size(); ++i) {
       const double x = patch.x_m[i] / a_m, u = patch.slip_m[i] * scale;
-      points.x.push_back(x);
-      points.y.push_back(u);
+      points.add(x, u);
       if (std::abs(x) > 1) continue;
       square += std::pow(u - ellipse(x), 2);
       ++inside;
     }
     if (a_over_h <= 20) profile.curves.push_back(std::move(points));
     middle.push_back(patch.middle_m * scale);
-    against_h.x.push_back(1.0 / a_over_h);
-    against_h.y.push_back(std::abs(middle.back() - 1));
-    rms.x.push_back(1.0 / a_over_h);
-    rms.y.push_back(std::sqrt(square / inside));
+    against_h.add(1.0 / a_over_h, std::abs(middle.back() - 1));
+    rms.add(1.0 / a_over_h, std::sqrt(square / inside));
   }
 };
 
 void check_limit(const MeshesPart& meshes, const EdgesPart& edges, Outcome& outcome) {
   const auto converged = limit(meshes.middle[0], meshes.middle[1], meshes.middle[2], 1, 2);
-  outcome.checks.push_back(
-      {"slip in the middle over theory, h -> 0, edges' part taken off", "", converged.value, 1,
-       converged.uncertainty + edges.uncertainty + std::abs(edges.part) / EdgesPart::a_over_h,
-       fmt::format("changes when the finest mesh and the widest body join the extrapolations, and h/a of the "
-                   "edges' part ({:.2g}), which is known on one mesh",
-                   edges.part)});
-  outcome.checks.push_back({"order in h of the error in the middle", "",
-                            std::log2(meshes.against_h.y[1] / meshes.against_h.y[2]), 1, 0.3,
-                            "terms of higher order on meshes this coarse"});
-  outcome.checks.push_back({"fastest slip at the end over c_S slip/a", "", meshes.rest, 0, 1e-3,
-                            "how far the slow rise is from rest: far below the errors above"});
+  outcome.check(
+      "slip in the middle over theory, h -> 0, edges' part taken off", converged.value, 1,
+      converged.uncertainty + edges.uncertainty + std::abs(edges.part) / EdgesPart::a_over_h,
+      fmt::format("changes when the finest mesh and the widest body join the extrapolations, and h/a of the "
+                  "edges' part ({:.2g}), which is known on one mesh",
+                  edges.part));
+  outcome.check("order in h of the error in the middle",
+                std::log2(meshes.against_h.y[1] / meshes.against_h.y[2]), 1, 0.3,
+                "terms of higher order on meshes this coarse");
+  outcome.check("fastest slip at the end over c_S slip/a", meshes.rest, 0, 1e-3,
+                "how far the slow rise is from rest: far below the errors above");
 }
 
 }  // namespace
@@ -161,10 +152,9 @@ Outcome slip_patch(Effort effort) {
   MeshesPart meshes;
   for (const int n : effort == Effort::full ? std::vector{10, 20, 40} : std::vector{5, 10, 20}) {
     meshes.add(n, edges.part, profile);
-    outcome.checks.push_back(
-        {fmt::format("slip in the middle over theory, h = a/{}, edges' part taken off", n), "",
-         meshes.middle.back(), 1, 1.0 / n,
-         "the patch ends between the last node that slips and the next: h/a"});
+    outcome.check(fmt::format("slip in the middle over theory, h = a/{}, edges' part taken off", n),
+                  meshes.middle.back(), 1, 1.0 / n,
+                  "the patch ends between the last node that slips and the next: h/a");
   }
   check_limit(meshes, edges, outcome);
   Chart error{.x_label = "h / a", .y_label = "relative error", .log_x = true, .log_y = true};

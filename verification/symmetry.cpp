@@ -92,10 +92,10 @@ Outcome symmetry(Effort effort) {
     double worst = 0;
     for (int k = 1; k < 36; ++k)
       worst = std::max(worst, turned_cell(cell, k * std::numbers::pi / 18, material));
-    outcome.checks.push_back({fmt::format("stiffness of a {} cell, turned by 10 to 350 degrees: largest "
-                                          "deviation over the largest entry",
-                                          name),
-                              "", worst, 0, 1e-14, "some tens of roundings"});
+    outcome.check(fmt::format("stiffness of a {} cell, turned by 10 to 350 degrees: largest "
+                              "deviation over the largest entry",
+                              name),
+                  worst, 0, 1e-14, "some tens of roundings");
   }
 
   const double h = effort == Effort::quick ? 2e-3 : 1e-3;
@@ -110,27 +110,25 @@ Outcome symmetry(Effort effort) {
                         std::abs(a.state.u_m.y[n] - b.state.u_m.y[image])});
     motion = std::max({motion, std::abs(a.u_m.x[n] + b.u_m.x[image]), std::abs(a.u_m.y[n] - b.u_m.y[image])});
   }
-  outcome.checks.push_back({"statics: largest difference of u over the largest u", "", statics / u_largest, 0,
-                            1e-11, "rounding times the condition of the stiffness, some 1e5"});
-  outcome.checks.push_back({"number of onsets", "", static_cast<double>(b.onsets.size()),
-                            static_cast<double>(a.onsets.size()), 0, "the same"});
-  outcome.checks.push_back({"end of the event: largest difference of u over the largest u", "",
-                            motion / u_largest, 0, 1e-11, "the same, carried on"});
+  outcome.check("statics: largest difference of u over the largest u", statics / u_largest, 0, 1e-11,
+                "rounding times the condition of the stiffness, some 1e5");
+  outcome.check("number of onsets", static_cast<double>(b.onsets.size()),
+                static_cast<double>(a.onsets.size()), 0, "the same");
+  outcome.check("end of the event: largest difference of u over the largest u", motion / u_largest, 0, 1e-11,
+                "the same, carried on");
   double late = 0;
   Chart chart{.x_label = "x, of the mirrored plate from its right edge (mm)", .y_label = "first slip (us)"};
-  Curve original{"plate", Curve::Kind::theory, {}, {}}, image{"mirrored plate", Curve::Kind::program, {}, {}};
+  Curve original{"plate", Curve::Kind::theory}, image{"mirrored plate"};
   for (std::size_t k = 0; k < std::min(a.onsets.size(), b.onsets.size()); ++k) {
     late = std::max(late, std::abs(a.onsets[k].time_s - b.onsets[k].time_s) +
                               (a.onsets[k].node == b.onsets[k].node ? 0 : 1));
     // The picture shows the first slip of every other node.
     if (a.onsets[k].node % 2 != 0 || (k > 0 && a.onsets[k].node == a.onsets[k - 1].node)) continue;
-    original.x.push_back(1e3 * mesh.x_m[mesh.interface_nodes[a.onsets[k].node]]);
-    original.y.push_back(1e6 * a.onsets[k].time_s);
-    image.x.push_back(1e3 * mesh.x_m[mesh.interface_nodes[b.onsets[k].node]]);
-    image.y.push_back(1e6 * b.onsets[k].time_s);
+    original.add(1e3 * mesh.x_m[mesh.interface_nodes[a.onsets[k].node]], 1e6 * a.onsets[k].time_s);
+    image.add(1e3 * mesh.x_m[mesh.interface_nodes[b.onsets[k].node]], 1e6 * b.onsets[k].time_s);
   }
-  outcome.checks.push_back({"largest difference of onset times over the sub-step", "", late / a.substep_s, 0,
-                            1e-6, "1e-11 of u is 1e-9 of t/p, which rises by some 1e-3 in a sub-step"});
+  outcome.check("largest difference of onset times over the sub-step", late / a.substep_s, 0, 1e-6,
+                "1e-11 of u is 1e-9 of t/p, which rises by some 1e-3 in a sub-step");
   chart.curves = {original, image};
   outcome.charts.push_back(std::move(chart));
   return outcome;

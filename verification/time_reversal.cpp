@@ -7,7 +7,6 @@
 #include <string>
 
 #include "interface/friction/coulomb.hpp"
-#include "motion/observers/onsets.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
@@ -34,24 +33,21 @@ struct Setting {
 };
 
 /// Of the plate at rest on the plane.
-double strain(const solid::Material& material) {
-  return pressure_Pa / solid::longitudinal_modulus_Pa(material);
-}
+const double strain = pressure_Pa / solid::longitudinal_modulus_Pa(undamped);
 
 /// A motion there and back.
 class Journey {
  public:
-  Journey(const mesh::Mesh& mesh, const solid::Material& material, const Setting& setting, int n_steps)
+  Journey(const mesh::Mesh& mesh, const Setting& setting, int n_steps)
       : setting_(setting),
         n_steps_(n_steps),
-        stepper_(mesh, material, {interface::Coulomb{0}},
+        stepper_(mesh, undamped, {interface::Coulomb{0}},
                  setting.subcycled ? motion::TimeStepping{} : plain_stepping()),
-        state_(begin(mesh, strain(material))),
-        recorder_(state_, 1, 0) {}
+        state_(begin(mesh)) {}
 
   void go_there_and_back() {
     go(0);
-    stepper_.reverse(recorder_);
+    reverse(stepper_);
     turned_ = state_;
     turned_.u_m = stepper_.u_m();
     turned_.u_per_shear = stepper_.v_m_per_s();
@@ -70,19 +66,18 @@ class Journey {
   /// The same way back, begun by a new start, with the steady part of the forces of the turned state.
   Curve distances_after_new_start() {
     stepper_.start(turned_, 1);
-    Curve restarted{"air, sub-cycled, new start", Curve::Kind::program, {}, {}};
+    Curve restarted{"air, sub-cycled, new start"};
     for (int i = 1; i <= n_steps_; ++i) {
-      stepper_.advance(recorder_);
+      advance(stepper_);
       if (i % (n_steps_ / 25) != 0) continue;
-      restarted.x.push_back(n_steps_ + i);
-      restarted.y.push_back(distance_m() / largest_m_);
+      restarted.add(n_steps_ + i, distance_m() / largest_m_);
     }
     return restarted;
   }
 
  private:
   /// A bump that moves to the upper right and breaks up at the edges.
-  statics::Equilibrium begin(const mesh::Mesh& mesh, double strain) {
+  statics::Equilibrium begin(const mesh::Mesh& mesh) {
     const auto bump = [&](mesh::Node n, double time) {
       const double x = mesh.x_m[n] - 0.3 * width_m - 700 * time,
                    y = mesh.y_m[n] - 0.4 * height_m - 400 * time;
@@ -99,11 +94,11 @@ class Journey {
   }
   void go(int from) {
     for (int i = 1; i <= n_steps_; ++i) {
-      stepper_.advance(recorder_);
+      advance(stepper_);
       const double distance = distance_m();
       if (setting_.contact) n_open_ += std::ranges::count(stepper_.interface_state().p_Pa, 0.0);
       largest_m_ = std::max(largest_m_, distance);
-      if ((from + i) % (n_steps_ / 25) == 0) curve_.x.push_back(from + i), curve_.y.push_back(distance);
+      if ((from + i) % (n_steps_ / 25) == 0) curve_.add(from + i, distance);
     }
   }
 
@@ -111,30 +106,27 @@ class Journey {
   int n_steps_;
   motion::Stepper stepper_;
   statics::Equilibrium state_, turned_;
-  motion::Recorder recorder_;
   double largest_m_ = 0;
   std::ptrdiff_t n_open_ = 0;  ///< interface nodes off the plane, summed over the steps
-  Curve curve_{setting_.name(), Curve::Kind::program, {}, {}};
+  Curve curve_{setting_.name()};
 };
 
 void check(const Journey& journey, const Setting& setting, double rest_m, int n_steps, Outcome& outcome) {
-  outcome.checks.push_back(
-      {fmt::format("distance from the start after {} steps there and back, over the "
-                   "largest on the way, {}",
-                   n_steps, setting.name()),
-       "", journey.distance_m() / journey.largest_distance_m(), 0,
-       2 * n_steps * std::numeric_limits<double>::epsilon() * rest_m / journey.largest_distance_m(),
-       "one rounding of the largest displacement a step"});
+  outcome.check(fmt::format("distance from the start after {} steps there and back, over the "
+                            "largest on the way, {}",
+                            n_steps, setting.name()),
+                journey.distance_m() / journey.largest_distance_m(), 0,
+                2 * n_steps * std::numeric_limits<double>::epsilon() * rest_m / journey.largest_distance_m(),
+                "one rounding of the largest displacement a step");
   if (setting.contact)
-    outcome.checks.push_back({fmt::format("nodes off the plane at the end of a step, {}", setting.name()), "",
-                              static_cast<double>(journey.n_open()), 0, 0, "a landing would cost energy"});
+    outcome.check(fmt::format("nodes off the plane at the end of a step, {}", setting.name()),
+                  static_cast<double>(journey.n_open()), 0, 0, "a landing would cost energy");
 }
 
 }  // namespace
 
 Outcome time_reversal(Effort effort) {
   Outcome outcome;
-  const solid::Material material{.stiffness_damping_s = 0};
   const auto mesh = mesh::make_plate(
       {.width_m = width_m, .height_m = height_m, .element_size_m = h_m, .corner = mesh::Corner::none});
   const int n_steps = effort == Effort::quick ? 500 : 5000;
@@ -143,9 +135,9 @@ Outcome time_reversal(Effort effort) {
   for (const bool contact : {false, true})
     for (const bool subcycled : {false, true}) {
       const Setting setting{contact, subcycled};
-      Journey journey(mesh, material, setting, n_steps);
+      Journey journey(mesh, setting, n_steps);
       journey.go_there_and_back();
-      check(journey, setting, contact ? strain(material) * height_m : lift_m, n_steps, outcome);
+      check(journey, setting, contact ? strain * height_m : lift_m, n_steps, outcome);
       chart.curves.push_back(journey.distances());
       if (subcycled && !contact) chart.curves.push_back(journey.distances_after_new_start());
     }

@@ -16,6 +16,12 @@ bool Check::holds() const {
   return std::abs(measured - expected) <= tolerance;
 }
 
+double Curve::value_at(double at) const {
+  const auto i = static_cast<std::size_t>(std::ranges::lower_bound(x, at) - x.begin());
+  const double w = (at - x[i - 1]) / (x[i] - x[i - 1]);
+  return (1 - w) * y[i - 1] + w * y[i];
+}
+
 bool Outcome::holds() const {
   return !checks.empty() && std::ranges::all_of(checks, [](const Check& check) { return check.holds(); });
 }

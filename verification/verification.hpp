@@ -32,7 +32,14 @@ struct Curve {
   enum class Kind { theory, program };
   std::string label;
   Kind kind = Kind::program;  ///< drawn as a line, or as points
-  std::vector<double> x, y;
+  std::vector<double> x = {}, y = {};
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  /// Between its points, x ascending, linear.
+  double value_at(double at) const;
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -56,6 +63,10 @@ struct Outcome {
   std::vector<Check> checks;
   std::vector<Chart> charts;
 
+  void check(const std::string& quantity, double measured, double expected, double tolerance,
+             const std::string& reason, const std::string& unit = {}) {
+    checks.push_back({quantity, unit, measured, expected, tolerance, reason});
+  }
   bool holds() const;
 
   template <class Archive>

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.hpp"
-#include "statics/libraries.hpp"
+#include "statics/settings.hpp"
 
 namespace slipfront::cli {
 

@@ -18,11 +18,6 @@ struct Found {
   double fraction = 0.0;  // of the way to the next row
 };
 
-// std::lerp may return a number where one end is NaN.
-double interpolate(double from, double to, double fraction) {
-  return from + fraction * (to - from);
-}
-
 void check(const record::History& history, double threshold_m_per_s, int halo) {
   SLIPFRONT_ASSERT(threshold_m_per_s > 0.0, "the slip rate of a sticking node is never exactly zero");
   SLIPFRONT_ASSERT(halo >= 0, "a halo is a number of nodes");
@@ -37,10 +32,10 @@ void check(const record::History& history, double threshold_m_per_s, int halo) {
 record::Traction traction_at(const record::History& history, const Found& found, std::size_t node) {
   const std::size_t n_nodes = history.x_m.size();
   const std::size_t here = found.row * n_nodes + node;
-  if (found.fraction == 0.0) return {history.t_Pa[here], history.p_Pa[here]};
+  const record::Traction at_row = {history.t_Pa[here], history.p_Pa[here]};
+  if (found.fraction == 0.0) return at_row;
   const std::size_t next = here + n_nodes;
-  return {interpolate(history.t_Pa[here], history.t_Pa[next], found.fraction),
-          interpolate(history.p_Pa[here], history.p_Pa[next], found.fraction)};
+  return record::between(at_row, {history.t_Pa[next], history.p_Pa[next]}, found.fraction);
 }
 
 }  // namespace
@@ -69,12 +64,12 @@ record::SlipRecord record_from_history(const record::History& history, double th
       const bool turns = (v0 > 0.0) != (v1 > 0.0);  // through rest: a stop and an onset in one interval
       if (slips(v0) && (!slips(v1) || turns)) {
         const double fraction = (v0 - std::copysign(threshold_m_per_s, v0)) / (v0 - v1);
-        record.stops.push_back({id, interpolate(history.time_s[row], history.time_s[row + 1], fraction)});
+        record.stops.push_back({id, record::between(history.time_s[row], history.time_s[row + 1], fraction)});
       }
       if (slips(v1) && (!slips(v0) || turns)) {
         const double fraction = (std::copysign(threshold_m_per_s, v1) - v0) / (v1 - v0);
         found.push_back(
-            {{id, interpolate(history.time_s[row], history.time_s[row + 1], fraction)}, row, fraction});
+            {{id, record::between(history.time_s[row], history.time_s[row + 1], fraction)}, row, fraction});
       }
     }
   }

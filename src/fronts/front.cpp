@@ -2,6 +2,7 @@
 #include "fronts/front.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -9,7 +10,6 @@
 #include "base/error.hpp"
 #include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
-#include "fronts/pauses.hpp"
 #include "fronts/trace.hpp"
 
 namespace slipfront::fronts {
@@ -25,11 +25,6 @@ constexpr double waits = 3.0;  // of a tip, in times that a front of the event t
 constexpr double share_from_l_star = 5.0;  // no slipping share nearer to the start
 constexpr double acceleration_half_width_m = 3e-3;
 constexpr int acceleration_side_points = 4;
-
-// std::lerp may return a number where one end is NaN.
-double interpolate(double from, double to, double fraction) {
-  return from + fraction * (to - from);
-}
 
 /// First onset of each node, and its place in record.onsets. [nodes]
 struct FirstOnsets {
@@ -130,7 +125,7 @@ Bracket bracket(const Passage& tip, double run_m) {
 }
 
 double time_at(const Passage& tip, const Bracket& at) {
-  return interpolate(tip.time_s[at.behind], tip.time_s[at.ahead], at.fraction);
+  return record::between(tip.time_s[at.behind], tip.time_s[at.ahead], at.fraction);
 }
 
 /// The first and the last point of a path that a length of it lies between.
@@ -198,8 +193,7 @@ record::Traction traction_ahead(const record::SlipRecord& record, const Passage&
   if (at.fraction == 1.0) return ahead;
   const record::Traction behind = traction_at(record, tip.onset[at.behind], node);
   if (at.fraction == 0.0) return behind;
-  return {interpolate(behind.t_Pa, ahead.t_Pa, at.fraction),
-          interpolate(behind.p_Pa, ahead.p_Pa, at.fraction)};
+  return record::between(behind, ahead, at.fraction);
 }
 
 /// The zone that slips behind a tip, while the tip and the time go on along a path. Places are counted in
@@ -369,45 +363,19 @@ bool is_driven(const FrontOptions& options, double x_m) {
 }
 
 std::string_view name(End end) {
-  switch (end) {
-    case End::arrest:
-      return "arrest";
-    case End::meets_front:
-      return "meets_front";
-    case End::contact_end:
-      return "contact_end";
-    case End::record_edge:
-      return "record_edge";
-    case End::record_end:
-      return "record_end";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 5> names = {"arrest", "meets_front", "contact_end", "record_edge",
+                                                     "record_end"};
+  return names[static_cast<std::size_t>(end)];
 }
 
 std::string_view name(SlipMode mode) {
-  switch (mode) {
-    case SlipMode::crack:
-      return "crack";
-    case SlipMode::pulse:
-      return "pulse";
-    case SlipMode::mixed:
-      return "mixed";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 3> names = {"crack", "pulse", "mixed"};
+  return names[static_cast<std::size_t>(mode)];
 }
 
 std::string_view name(SpeedKind kind) {
-  switch (kind) {
-    case SpeedKind::front:
-      return "front";
-    case SpeedKind::triggered:
-      return "triggered";
-    case SpeedKind::simultaneous:
-      return "simultaneous";
-    case SpeedKind::path_end:
-      return "path_end";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 4> names = {"front", "triggered", "simultaneous", "path_end"};
+  return names[static_cast<std::size_t>(kind)];
 }
 
 std::vector<Front> find_fronts(const record::SlipRecord& record, const record::StaticState& state,

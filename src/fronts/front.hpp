@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/per_node.hpp"
-#include "fronts/speed_interval.hpp"
 #include "record/record.hpp"
 
 namespace slipfront::fronts {
@@ -29,6 +28,12 @@ double energy_density_J_per_m3(const record::Traction& traction, const Elasticit
 /// A part of the interface.
 struct Zone {
   double from_m = 0, to_m = 0;
+};
+
+/// Where the length l* lies over which the tip's speed is taken, against the node at x.
+enum class SpeedInterval {
+  centred,   ///< x - l*/2 to x + l*/2
+  approach,  ///< x - l* to x: from where t_d and p_d are taken to where t_r and p_r are
 };
 
 /// How fronts are found and measured. Lengths in m, times in s.

@@ -10,8 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "fronts/pauses.hpp"
-
 namespace slipfront::fronts {
 namespace {
 

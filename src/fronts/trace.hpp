@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,20 @@ struct Path {
   int direction = 0;  ///< +1 or -1 along x
   std::vector<int> nodes;
   End end = End::record_end;
+};
+
+/// Calls a function once in so many pieces of work, such as nodes; one that throws ends the work.
+class Pauses {
+ public:
+  explicit Pauses(const std::function<void()>& pause) : pause_(pause) {}
+  void count() {
+    if (++n_ % every == 0 && pause_) pause_();
+  }
+
+ private:
+  static constexpr long every = 4096;
+  const std::function<void()>& pause_;
+  long n_ = 0;
 };
 
 /// Nodes no farther apart than this are within options.min_length_m: with an allowance for the rounding of

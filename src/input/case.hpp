@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fronts/speed_interval.hpp"
+#include "fronts/front.hpp"
 #include "interface/interface.hpp"
 #include "interface/nucleation.hpp"
 #include "interface/trigger.hpp"

@@ -16,20 +16,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double min_radius_in_cells = 0.75;
 constexpr int min_margin_in_cells = 3;  // regular cells kept between the arc's end and the patch's
 
-/// How the logical corner is cut and what is re-shaped; cells are counted from the corner.
-struct Fold {
-  double radius_m = 0;
-  double spacing_m = 0;
-  int cut = 0;       ///< k: cells taken away along each side of the corner
-  int side = 0;      ///< cells along each side of the re-shaped patch
-  int half_arc = 0;  ///< cells along one half of the arc
-  int n_nodes() const { return (side + 1) * (side + 1); }
-  /// Number within the patch of logical node (i, j); glued nodes have the same number.
-  int node(int i, int j) const { return j == cut && i < cut ? i * (side + 1) + cut : j * (side + 1) + i; }
-  bool has_node(int i, int j) const { return i >= cut || j > cut; }
-  bool has_cell(int i, int j) const { return i >= cut || j >= cut; }
-};
-
 using Point = RoundedCorners::Point;
 
 /// One corner of a cell and the corners after and before it, counterclockwise.
@@ -166,7 +152,7 @@ void optimise(Patch& patch, const Fold& fold) {
 }  // namespace
 
 RoundedCorners::RoundedCorners(const Grid& grid, bool is_graded, double radius_m)
-    : columns_(grid.columns), radius_m_(radius_m), spacing_m_(grid.spacing_m) {
+    : columns_(grid.columns), fold_{.radius_m = radius_m, .spacing_m = grid.spacing_m} {
   const double h = grid.spacing_m;
   const double smallest = min_radius_in_cells * h;
   const int room = std::min(grid.columns / 2, grid.rows);
@@ -185,44 +171,43 @@ RoundedCorners::RoundedCorners(const Grid& grid, bool is_graded, double radius_m
                     is_graded ? Message("'s smallest elements ({})", Key("plate.fine_height_m")) : Message(),
                     largest)
         .about("plate.width_m", "plate.height_m");
-  cut_ = std::max(1, static_cast<int>(std::lround((1 - pi / 4) * radius_m / h)));
-  side_ = std::min(room, static_cast<int>(std::ceil(1.25 * radius_m / h)) + 4);
-  const int segments = side_ - cut_;
+  fold_.cut = std::max(1, static_cast<int>(std::lround((1 - pi / 4) * radius_m / h)));
+  fold_.side = std::min(room, static_cast<int>(std::ceil(1.25 * radius_m / h)) + 4);
+  const int segments = fold_.side - fold_.cut;
   const double arc_m = pi / 4 * radius_m;
-  const double segment_m = (side_ * h - radius_m + arc_m) / segments;
-  half_arc_ = std::clamp(static_cast<int>(std::lround(arc_m / segment_m)), 1, segments - 1);
+  const double segment_m = (fold_.side * h - radius_m + arc_m) / segments;
+  fold_.half_arc = std::clamp(static_cast<int>(std::lround(arc_m / segment_m)), 1, segments - 1);
 }
 
 bool RoundedCorners::is_cut(int i, int j) const {
-  return j < cut_ && (i < cut_ || i >= columns_ - cut_);
+  return j < cut() && (i < cut() || i >= columns_ - cut());
 }
 
 RoundedCorners::Place RoundedCorners::glued(Place node) const {
   const auto [i, j] = node;
-  if (j != cut_) return node;
-  if (i < cut_) return {cut_, i};
-  if (columns_ - i < cut_) return {columns_ - cut_, columns_ - i};
+  if (j != cut()) return node;
+  if (i < cut()) return {cut(), i};
+  if (columns_ - i < cut()) return {columns_ - cut(), columns_ - i};
   return node;
 }
 
 std::vector<RoundedCorners::Point> RoundedCorners::places() const {
-  const Fold fold{radius_m_, spacing_m_, cut_, side_, half_arc_};
-  Patch patch = make_patch(fold);
-  spread(patch, fold);
-  optimise(patch, fold);
-  const Point arc_middle = on_smooth_side(fold, 0);
+  Patch patch = make_patch(fold_);
+  spread(patch, fold_);
+  optimise(patch, fold_);
+  const Point arc_middle = on_smooth_side(fold_, 0);
   std::vector<Point> places;
-  for (int j = 0; j < side_; ++j)
-    for (int i = 0; i < side_; ++i)
-      places.push_back(fold.has_node(i, j) ? patch.at[fold.node(i, j)] : arc_middle);
+  for (int j = 0; j < side(); ++j)
+    for (int i = 0; i < side(); ++i)
+      places.push_back(fold_.has_node(i, j) ? patch.at[fold_.node(i, j)] : arc_middle);
   return places;
 }
 
 std::vector<RoundedCorners::Place> RoundedCorners::lower() const {
   std::vector<Place> lower;
-  for (int a = half_arc_; a > 0; --a) lower.push_back({0, cut_ + a});
-  for (int i = cut_; i <= columns_ - cut_; ++i) lower.push_back({i, 0});
-  for (int a = 1; a <= half_arc_; ++a) lower.push_back({columns_, cut_ + a});
+  for (int a = fold_.half_arc; a > 0; --a) lower.push_back({0, cut() + a});
+  for (int i = cut(); i <= columns_ - cut(); ++i) lower.push_back({i, 0});
+  for (int a = 1; a <= fold_.half_arc; ++a) lower.push_back({columns_, cut() + a});
   return lower;
 }
 

@@ -7,6 +7,20 @@
 
 namespace slipfront::mesh {
 
+/// How the logical corner is cut and what is re-shaped; cells are counted from the corner.
+struct Fold {
+  double radius_m = 0;
+  double spacing_m = 0;
+  int cut = 0;       ///< k: cells taken away along each side of the corner
+  int side = 0;      ///< cells along each side of the re-shaped patch
+  int half_arc = 0;  ///< cells along one half of the arc
+  int n_nodes() const { return (side + 1) * (side + 1); }
+  /// Number within the patch of logical node (i, j); glued nodes have the same number.
+  int node(int i, int j) const { return j == cut && i < cut ? i * (side + 1) + cut : j * (side + 1) + i; }
+  bool has_node(int i, int j) const { return i >= cut || j > cut; }
+  bool has_cell(int i, int j) const { return i >= cut || j >= cut; }
+};
+
 /// Both lower corners of a regular rectangular grid rounded by quarter circles, without slivers.
 ///
 /// Pushing the nodes of a regular grid onto a rounded corner makes a cell with a nearly straight angle. So
@@ -45,9 +59,9 @@ class RoundedCorners {
   RoundedCorners(const Grid& grid, bool is_graded, double radius_m);
 
   /// Columns at either end in which nodes are moved.
-  int side() const { return side_; }
+  int side() const { return fold_.side; }
   /// Columns at either end that cells wrapped around the corner reach.
-  int cut() const { return cut_; }
+  int cut() const { return fold_.cut; }
   /// Whether the cell between nodes (i, j) and (i + 1, j + 1) is taken away.
   bool is_cut(int i, int j) const;
   /// The node that a cell has instead of this one.
@@ -60,11 +74,7 @@ class RoundedCorners {
 
  private:
   int columns_ = 0;
-  double radius_m_ = 0;
-  double spacing_m_ = 0;
-  int cut_ = 0;       ///< k: cells taken away along each side of the corner
-  int side_ = 0;      ///< cells along each side of the re-shaped patch
-  int half_arc_ = 0;  ///< cells along one half of the arc
+  Fold fold_;
 };
 
 }  // namespace slipfront::mesh

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "base/error.hpp"
 
@@ -53,29 +52,16 @@ double distance_x_m(const Mesh& mesh, Node from, Node to) {
   return distance - std::copysign(mesh.period_m, distance);
 }
 
-Quality quality(const Mesh& mesh) {
-  SLIPFRONT_ASSERT(!mesh.cells.empty(), "the quality of a mesh without cells is not defined");
-  constexpr double pi = std::numbers::pi;
-  double min_angle = std::numeric_limits<double>::infinity();
-  double max_angle = 0;
+double min_side_m(const Mesh& mesh) {
+  SLIPFRONT_ASSERT(!mesh.cells.empty(), "a mesh without cells has no sides");
   double min_square = std::numeric_limits<double>::infinity();
-  for (const Cell& cell : mesh.cells) {
+  for (const Cell& cell : mesh.cells)
     for (int corner = 0; corner < 4; ++corner) {
-      const Node here = cell[corner];
-      const Node next = cell[(corner + 1) % 4];
-      const Node last = cell[(corner + 3) % 4];
-      const double ax = distance_x_m(mesh, here, next);
-      const double ay = mesh.y_m[next] - mesh.y_m[here];
-      const double bx = distance_x_m(mesh, here, last);
-      const double by = mesh.y_m[last] - mesh.y_m[here];
-      double angle = std::atan2(ax * by - ay * bx, ax * bx + ay * by);
-      if (angle < 0) angle += 2 * pi;  // a reflex corner
-      min_angle = std::min(min_angle, angle);
-      max_angle = std::max(max_angle, angle);
-      min_square = std::min(min_square, ax * ax + ay * ay);
+      const Node here = cell[corner], next = cell[(corner + 1) % 4];
+      const double x = distance_x_m(mesh, here, next), y = mesh.y_m[next] - mesh.y_m[here];
+      min_square = std::min(min_square, x * x + y * y);
     }
-  }
-  return {min_angle * 180 / pi, max_angle * 180 / pi, std::sqrt(min_square)};
+  return std::sqrt(min_square);
 }
 
 }  // namespace slipfront::mesh

@@ -78,12 +78,7 @@ double distance_x_m(const Mesh& mesh, Node from, Node to);
 /// plate is periodic. [interface nodes], m.
 std::vector<double> tributary_lengths_m(const Mesh& mesh);
 
-/// Smallest and largest interior angle over all cells (degrees), smallest cell side (m).
-struct Quality {
-  double min_angle_deg = 0;
-  double max_angle_deg = 0;
-  double min_side_m = 0;
-};
-Quality quality(const Mesh& mesh);
+/// Of all cells.
+double min_side_m(const Mesh& mesh);
 
 }  // namespace slipfront::mesh

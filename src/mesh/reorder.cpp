@@ -7,40 +7,28 @@ namespace slipfront::mesh {
 
 namespace {
 
-/// Nodes that share a cell with node n: neighbour[first[n]] ... neighbour[first[n + 1] - 1].
-struct Neighbours {
-  std::vector<std::size_t> first;
-  std::vector<Node> neighbour;
-  std::span<const Node> of(Node n) const {
-    return std::span(neighbour).subspan(first[n], first[n + 1] - first[n]);
-  }
-};
+/// Of each node those that share a cell with it.
+using Neighbours = std::vector<std::vector<Node>>;
 
 Neighbours neighbours(const Mesh& mesh) {
-  std::vector<std::vector<Node>> lists(mesh.x_m.size());
+  Neighbours all(mesh.x_m.size());
   for (const Cell& cell : mesh.cells)
     for (const Node a : cell)
       for (const Node b : cell)
-        if (a != b && std::ranges::find(lists[a], b) == lists[a].end()) lists[a].push_back(b);
-  Neighbours result;
-  result.first.push_back(0);
-  for (const auto& list : lists) {
-    result.neighbour.insert(result.neighbour.end(), list.begin(), list.end());
-    result.first.push_back(result.neighbour.size());
-  }
-  return result;
+        if (a != b && std::ranges::find(all[a], b) == all[a].end()) all[a].push_back(b);
+  return all;
 }
 
 /// Appends the nodes reached from `start` in the order of Cuthill and McKee: by levels, those of each node
 /// with the fewest neighbours first.
 void append_levels(const Neighbours& graph, Node start, std::vector<bool>& seen, std::vector<Node>& order) {
-  const auto degree = [&](Node n) { return graph.of(n).size(); };
+  const auto degree = [&](Node n) { return graph[n].size(); };
   std::size_t next = order.size();
   order.push_back(start);
   seen[start] = true;
   for (; next < order.size(); ++next) {
     const std::size_t begin = order.size();
-    for (const Node n : graph.of(order[next]))
+    for (const Node n : graph[order[next]])
       if (!seen[n]) {
         seen[n] = true;
         order.push_back(n);
@@ -59,7 +47,7 @@ std::vector<Node> near_numbers(const Mesh& mesh) {
   std::vector<Node> order;
   order.reserve(n_nodes);
   for (Node n = 0; n < n_nodes; ++n) {
-    if (done[n] || graph.of(n).empty()) continue;
+    if (done[n] || graph[n].empty()) continue;
     // The last node of an order is far from its start: begun there, the levels are narrow.
     Node start = n;
     for (int search = 0; search < 3; ++search) {

@@ -30,13 +30,14 @@ struct Slabs {
   void for_some(std::size_t begin, std::size_t end, F&& f) const {
     for (std::size_t k = begin; k < end; ++k) visit(k, f);
   }
-  template <class F>
-  void for_each(F&& f) const {
-    for_some(0, n_slabs, f);
-  }
 };
 
 /// The whole in one slab.
-Slabs in_one_slab(std::shared_ptr<const Mesh> whole);
+inline Slabs in_one_slab(const std::shared_ptr<const Mesh>& whole) {
+  const auto n_nodes = whole->x_m.size();
+  return {n_nodes, whole->cells.size(), 1, [whole, n_nodes](std::size_t, const auto& f) {
+            f(Slab{*whole, 0, 0, n_nodes});
+          }};
+}
 
 }  // namespace slipfront::mesh

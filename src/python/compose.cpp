@@ -208,7 +208,7 @@ class Stepper {
     if (!below_) return bodies;
     bodies.push_back({below_->mesh, below_->material});
     const auto x_below_m = run::interface_x_m(below_->mesh);
-    const double least_m = 1e-6 * mesh::quality(above_.mesh).min_side_m;
+    const double least_m = 1e-6 * mesh::min_side_m(above_.mesh);
     const auto faces = [&](double a, double b) { return std::abs(a - b) < least_m; };
     if (above_.mesh.period_m != below_->mesh.period_m || !std::ranges::equal(x_m_, x_below_m, faces) ||
         has_gaps(*below_))

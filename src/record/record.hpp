@@ -20,6 +20,14 @@ struct Traction {
   }
 };
 
+/// On the way from one value to the other; std::lerp may return a number where one of them is none.
+inline double between(double from, double to, double share) {
+  return from + share * (to - from);
+}
+inline Traction between(const Traction& from, const Traction& to, double share) {
+  return {between(from.t_Pa, to.t_Pa, share), between(from.p_Pa, to.p_Pa, share)};
+}
+
 /// A node begins to slip.
 struct Onset {
   std::int32_t node = 0;  ///< index along the interface, left to right

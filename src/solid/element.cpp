@@ -19,6 +19,20 @@ constexpr std::array<double, 4> eta_of_node = {-1, -1, 1, 1};
 
 }  // namespace
 
+bool is_square(const CellCoordinates& c, double h) {
+  const CellCoordinates square = {0, 0, h, 0, h, h, 0, h};
+  for (int k = 0; k < 8; ++k)
+    if (std::abs(c[k] - c[k % 2] - square[k]) > square_tolerance * std::abs(h)) return false;
+  return true;
+}
+
+bool is_square_of_grid(const mesh::Mesh& mesh, const mesh::Grid& grid, const mesh::Cell& cell) {
+  const int stride = grid.stride();
+  const mesh::Node corner = cell[0];
+  return cell[1] == corner + 1 && cell[2] == corner + stride + 1 && cell[3] == corner + stride &&
+         is_square(cell_coordinates(mesh, cell), grid.spacing_m);
+}
+
 CellShape cell_shape(const CellCoordinates& c, double xi, double eta) {
   CellShape s;
   std::array<double, 4> d_dxi{}, d_deta{};

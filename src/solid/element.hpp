@@ -16,6 +16,14 @@ using CellStiffness = std::array<double, 64>;
 
 CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell);
 
+/// By which part of its side a cell may be no square, and still count as one.
+inline constexpr double square_tolerance = 1e-9;
+
+/// Whether it is a square with this side along x, its lower left node first.
+bool is_square(const CellCoordinates& coordinates, double side_m);
+/// Whether it is a square of the grid's spacing between grid neighbours, its lower left node first.
+bool is_square_of_grid(const mesh::Mesh& mesh, const mesh::Grid& grid, const mesh::Cell& cell);
+
 /// Shape functions of a cell at a place in it, and their gradients, 1/m.
 struct CellShape {
   std::array<double, 4> value{}, d_dx{}, d_dy{};

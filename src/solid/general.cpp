@@ -155,7 +155,7 @@ constexpr std::size_t forces_of_batch = 4 * pairs;
 
 /// Nodes have places here: those of the rows first, then the others at the cells.
 struct GeneralRows::Cells {
-  std::size_t n_places = 0, n_cells = 0;
+  std::size_t n_places = 0;
   std::vector<Run> runs;
   std::vector<double> per_mass;  ///< [rows] 1/kg
   std::vector<SharedStiffness> shared;
@@ -206,7 +206,6 @@ class GeneralRows::Builder {
       for (const auto n : mesh_.cells[c])
         if (place_[n] < 0) others.push_back(n);
     }
-    result_->n_cells = cells_.size();
     std::ranges::sort(others);
     others.erase(std::unique(others.begin(), others.end()), others.end());
     for (const auto n : others) append(n);
@@ -316,10 +315,6 @@ GeneralRows::GeneralRows(const mesh::Mesh& mesh, const Material& material, std::
                          std::span<const double> mass_kg, const std::vector<bool>& in_part)
     : node_(std::move(nodes)) {
   if (!node_.empty()) cells_ = Builder(mesh, material).build(node_, mass_kg, in_part);
-}
-
-std::size_t GeneralRows::n_cells() const {
-  return cells_ ? cells_->n_cells : 0;
 }
 
 std::size_t GeneralRows::n_shared_stiffnesses() const {

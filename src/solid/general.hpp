@@ -32,7 +32,6 @@ class GeneralRows {
 
   const std::vector<mesh::Node>& node() const { return node_; }  ///< [rows]
   std::size_t size() const { return node_.size(); }
-  std::size_t n_cells() const;
   std::size_t n_shared_stiffnesses() const;  ///< classes of similar regular cells
 
   /// Memory of one product.

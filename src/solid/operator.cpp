@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/random.hpp"
 #include "solid/cells_of_nodes.hpp"
 #include "solid/element.hpp"
 #include "solid/kernels.hpp"
@@ -39,21 +40,6 @@ std::vector<int> block_of_nodes(const mesh::Mesh& mesh, std::span<const mesh::Gr
   for (std::size_t k = 0; k < grids.size(); ++k)
     std::fill_n(block.begin() + grids[k].first, grids[k].n_nodes(), static_cast<int>(k));
   return block;
-}
-
-/// Whether a cell of the block is a square of the grid's spacing between grid neighbours, lowest left node
-/// first.
-bool is_regular(const mesh::Mesh& mesh, const mesh::Grid& grid, const mesh::Cell& cell) {
-  const int stride = grid.stride();
-  const mesh::Node corner = cell[0];
-  if (cell[1] != corner + 1 || cell[2] != corner + stride + 1 || cell[3] != corner + stride) return false;
-  const double h = grid.spacing_m;
-  const double tolerance = 1e-9 * h;
-  const auto c = cell_coordinates(mesh, cell);
-  const std::array<double, 8> square = {0, 0, h, 0, h, h, 0, h};
-  for (int k = 0; k < 8; ++k)
-    if (std::abs(c[k] - c[k % 2] - square[k]) > tolerance) return false;
-  return true;
 }
 
 std::array<double, 4> block_of(const CellStiffness& K, int a, int b) {
@@ -171,7 +157,7 @@ class RowKinds {
       const auto& cell = mesh.cells[c];
       const int block = block_of[cell[0]];
       if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
-        regular_cell_[c] = is_regular(mesh, op.blocks[block], cell);
+        regular_cell_[c] = is_square_of_grid(mesh, op.blocks[block], cell);
       } else {
         for (const auto n : cell) is_general_[n] = true;
       }
@@ -334,12 +320,6 @@ double kinetic_energy_J_per_m(const Operator& op, const Field& v) {
   return 0.5 * energy;
 }
 
-double top_force_x_N_per_m(const Operator& op, const Field& w) {
-  double force = 0;
-  for_each_row_product(op.far_edge_rows, w, [&](std::size_t, double x, double) { force += x; });
-  return force;
-}
-
 namespace {
 
 /// Lanczos' recurrence on the symmetric M^-1/2 K M^-1/2, from a fixed pseudo-random vector. Nothing is
@@ -379,11 +359,7 @@ class Lanczos {
 
  private:
   void set_start() {
-    std::uint64_t state = 1;
-    const auto random = [&state] {
-      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-      return static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5;
-    };
+    Random random(1);
     double norm2 = 0;
     for (std::size_t k = 0; k < n_; ++k) {
       if (op_.is_far_edge[k] || op_.mass_kg[k] == 0) continue;

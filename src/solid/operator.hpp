@@ -189,9 +189,6 @@ double strain_energy_J_per_m(const Operator& op, const Field& u);
 /// Kinetic energy 1/2 v . M v, J per unit thickness.
 double kinetic_energy_J_per_m(const Operator& op, const Field& v);
 
-/// Force of the loaded edge on the plate along x, N per unit thickness; w = u + beta_R v.
-double top_force_x_N_per_m(const Operator& op, const Field& w);
-
 /// Largest natural frequency (rad/s) with the loaded edge held, from Lanczos iterations; an upper bound up to
 /// the residual tolerance of 1e-3.
 double largest_frequency_rad_per_s(const Operator& op);
@@ -207,8 +204,6 @@ double largest_frequency_rad_per_s(const Operator& op);
 double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material,
                                  const mesh::Mesh* corners = nullptr);
 inline constexpr int rings_around_others = 16;
-/// By which part of its side a cell may be no square, and still count as one.
-inline constexpr double square_tolerance = 1e-9;
 
 /// The same of squares alone, with this smallest side.
 double frequency_of_squares_rad_per_s(double side_m, const Material& material);

@@ -51,38 +51,7 @@ Complex determinant(std::array<std::array<Complex, 4>, 4> m) {
   return product;
 }
 
-std::vector<Mode> modes_of(const std::vector<Complex>& zeros, double rate_per_s) {
-  std::vector<Mode> modes;
-  for (const Complex p : zeros) modes.push_back({p * rate_per_s});
-  return modes;
-}
-
-}  // namespace
-
-Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s, double pressure_Pa,
-                        const interface::Regularisation& regularisation) {
-  Sliding s;
-  // Weakening by slip is steepest at its beginning; far below any d_c.
-  constexpr double small_slip_m = 1e-12;
-  s.mu = interface::friction_coefficient(law, speed_m_per_s, 0);
-  s.slope_s_per_m = interface::friction_slope_s_per_m(law, speed_m_per_s, 0);
-  s.slip_slope_per_m =
-      (interface::friction_coefficient(law, speed_m_per_s, small_slip_m) - s.mu) / small_slip_m;
-  s.pressure_Pa = pressure_Pa;
-  s.relaxed = regularisation.relaxed;
-  s.relaxation_rate_per_s = interface::relaxation_rate_per_s(regularisation, speed_m_per_s);
-  return s;
-}
-
-Complex half_space_relation(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m,
-                            Complex p) {
-  const double k = wavenumber_per_m;
-  const Complex s = p * k * solid::shear_speed_m_per_s(bodies.above);
-  const auto r = response(sliding, solid::shear_modulus_Pa(bodies.above) * k, s);
-  const auto c = compliance(bodies, k, s);
-  return c.yy + sliding.mu * r.of_pressure * c.xy - r.of_slip * c.determinant;
-}
-
+/// F(s) of a layer, zero at its modes, in p = s/(k c_S).
 Complex layer_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
                        double height_m, Complex p) {
   const Complex s = p * wavenumber_per_m * solid::shear_speed_m_per_s(material);
@@ -113,6 +82,38 @@ Complex layer_relation(const solid::Material& material, const Sliding& sliding, 
   }
   // The determinant is odd in a_d and in a_s: the quotient has no branch points.
   return determinant(m) / (w.a_d * w.a_s);
+}
+
+std::vector<Mode> modes_of(const std::vector<Complex>& zeros, double rate_per_s) {
+  std::vector<Mode> modes;
+  for (const Complex p : zeros) modes.push_back({p * rate_per_s});
+  return modes;
+}
+
+}  // namespace
+
+Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s, double pressure_Pa,
+                        const interface::Regularisation& regularisation) {
+  Sliding s;
+  // Weakening by slip is steepest at its beginning; far below any d_c.
+  constexpr double small_slip_m = 1e-12;
+  s.mu = interface::friction_coefficient(law, speed_m_per_s, 0);
+  s.slope_s_per_m = interface::friction_slope_s_per_m(law, speed_m_per_s, 0);
+  s.slip_slope_per_m =
+      (interface::friction_coefficient(law, speed_m_per_s, small_slip_m) - s.mu) / small_slip_m;
+  s.pressure_Pa = pressure_Pa;
+  s.relaxed = regularisation.relaxed;
+  s.relaxation_rate_per_s = interface::relaxation_rate_per_s(regularisation, speed_m_per_s);
+  return s;
+}
+
+Complex half_space_relation(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m,
+                            Complex p) {
+  const double k = wavenumber_per_m;
+  const Complex s = p * k * solid::shear_speed_m_per_s(bodies.above);
+  const auto r = response(sliding, solid::shear_modulus_Pa(bodies.above) * k, s);
+  const auto c = compliance(bodies, k, s);
+  return c.yy + sliding.mu * r.of_pressure * c.xy - r.of_slip * c.determinant;
 }
 
 std::vector<Mode> growing_modes(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m,

@@ -54,9 +54,8 @@ std::optional<Mode> fastest_growing_mode(const Bodies& bodies, const Sliding& sl
 std::vector<Mode> growing_layer_modes(const solid::Material& material, const Sliding& sliding,
                                       double wavenumber_per_m, double height_m, double largest_rate_per_s);
 
-/// The two relations F(s) = 0 in p = s/(k c_S), c_S of the body above, for other ways of finding their zeros.
+/// The relation of half-spaces, whose zeros are their modes, in p = s/(k c_S), c_S of the body above: for
+/// other ways of finding them.
 Complex half_space_relation(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m, Complex p);
-Complex layer_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
-                       double height_m, Complex p);
 
 }  // namespace slipfront::stability

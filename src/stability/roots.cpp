@@ -140,15 +140,6 @@ class Finder {
   const Sector& sector_;
 };
 
-void sort_by_growth(std::vector<Complex>& zeros) {
-  std::ranges::sort(zeros, [](Complex a, Complex b) { return a.real() > b.real(); });
-}
-
-void add_if_new(Complex p, std::vector<Complex>& zeros) {
-  if (std::ranges::none_of(zeros, [&](Complex q) { return std::abs(p - q) < 1e-7 * std::abs(p); }))
-    zeros.push_back(p);
-}
-
 }  // namespace
 
 std::vector<Complex> zeros_by_argument_principle(const Function& f, const Sector& sector,
@@ -165,27 +156,16 @@ std::vector<Complex> zeros_by_argument_principle(const Function& f, const Sector
   const Cell cell = whole(tried);
   std::vector<Complex> zeros;
   for (const Complex p : expected)
-    if (const auto z = finder.newton(std::log(p)); z && cell.holds(*z)) add_if_new(std::exp(*z), zeros);
+    if (const auto z = finder.newton(std::log(p)); z && cell.holds(*z)) {
+      const Complex zero = std::exp(*z);
+      const auto is_near = [&](Complex other) { return std::abs(zero - other) < 1e-7 * std::abs(zero); };
+      if (std::ranges::none_of(zeros, is_near)) zeros.push_back(zero);
+    }
   if (zeros.size() != static_cast<std::size_t>(*n)) {
     zeros.clear();
     finder.find(cell, *n, zeros);
   }
-  sort_by_growth(zeros);
-  return zeros;
-}
-
-std::vector<Complex> zeros_by_starts(const Function& f, const Sector& sector, int n_modulus, int n_angle) {
-  const Finder finder(f, sector);
-  const Cell cell = whole(sector);
-  std::vector<Complex> zeros;
-  for (int i = 0; i < n_modulus; ++i)
-    for (int j = 0; j < n_angle; ++j) {
-      const auto z = finder.newton({cell.low_re + (cell.high_re - cell.low_re) * (i + 0.5) / n_modulus,
-                                    cell.low_im + (cell.high_im - cell.low_im) * (j + 0.5) / n_angle});
-      if (!z || !cell.holds(*z)) continue;
-      add_if_new(std::exp(*z), zeros);
-    }
-  sort_by_growth(zeros);
+  std::ranges::sort(zeros, [](Complex a, Complex b) { return a.real() > b.real(); });
   return zeros;
 }
 

@@ -28,9 +28,4 @@ std::vector<Complex> zeros_by_argument_principle(const std::function<Complex(Com
                                                  const Sector& sector,
                                                  std::span<const Complex> expected = {});
 
-/// The zeros that Newton's method reaches from a grid of n_modulus x n_angle starts, even in log p: a second
-/// way, which may miss some.
-std::vector<Complex> zeros_by_starts(const std::function<Complex(Complex)>& f, const Sector& sector,
-                                     int n_modulus, int n_angle);
-
 }  // namespace slipfront::stability

@@ -41,17 +41,17 @@ double BodiesOnGrid::share_of_height(mesh::Node n) const {
   return share(grid.node(i, plate_is_lower_ ? -1 - j : j));
 }
 
-BodiesOnGrid::Vector BodiesOnGrid::on_grid(const DisplacementOfBodies& u, mesh::Node n) const {
+solid::Pair BodiesOnGrid::on_grid(const DisplacementOfBodies& u, mesh::Node n) const {
   if (base_ == nullptr) return {u.above->x[n], u.above->y[n]};
   const auto& u_upper = plate_is_lower_ ? *u.below : *u.above;
   const auto& u_lower = plate_is_lower_ ? *u.above : *u.below;
   const auto& grid = upper().grid;
   const int i = n % grid.stride(), j = n / grid.stride();
   const auto of_upper = [&](int row) {
-    return Vector{u_upper.x[grid.node(i, row)], u_upper.y[grid.node(i, row)]};
+    return solid::Pair{u_upper.x[grid.node(i, row)], u_upper.y[grid.node(i, row)]};
   };
   const auto of_lower = [&](int row) {
-    return Vector{u_lower.x[grid.node(i, row)], -u_lower.y[grid.node(i, row)]};
+    return solid::Pair{u_lower.x[grid.node(i, row)], -u_lower.y[grid.node(i, row)]};
   };
   if (j < interface_row()) return of_lower(interface_row() - 1 - j);
   auto v = of_upper(j - interface_row());

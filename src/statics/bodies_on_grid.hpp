@@ -18,12 +18,9 @@ class BodiesOnGrid {
  public:
   BodiesOnGrid(const ElasticBody& plate, const std::optional<ElasticBody>& base);
 
-  struct Vector {
-    double x = 0, y = 0;
-  };
   /// What is on the grid at `n` where the bodies' displacement is u: that of a node, relative to what is
   /// below in the interface row.
-  Vector on_grid(const DisplacementOfBodies& u, mesh::Node n) const;
+  solid::Pair on_grid(const DisplacementOfBodies& u, mesh::Node n) const;
   /// The bodies' displacement where the grid's is u.
   Displacement of_bodies(solid::Field u) const;
 

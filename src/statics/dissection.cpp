@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "solid/cells_of_nodes.hpp"
+
 namespace slipfront::statics {
 
 namespace {
@@ -16,16 +18,7 @@ void append_block(NodeOrder& order, std::span<const mesh::Node> nodes) {
 
 class Dissection {
  public:
-  explicit Dissection(const mesh::Mesh& mesh) : mesh_(mesh), part_(mesh.n_nodes(), 0) {
-    first_.assign(mesh.n_nodes() + 1, 0);
-    for (const auto& cell : mesh.cells)
-      for (const auto n : cell) ++first_[n + 1];
-    for (std::size_t n = 0; n + 1 < first_.size(); ++n) first_[n + 1] += first_[n];
-    cell_.resize(4 * mesh.cells.size());
-    auto next = first_;
-    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-      for (const auto n : mesh.cells[k]) cell_[next[n]++] = static_cast<std::int32_t>(k);
-  }
+  explicit Dissection(const mesh::Mesh& mesh) : mesh_(mesh), around_(mesh), part_(mesh.n_nodes(), 0) {}
 
   /// Appends the nodes to `order`: one half, the other half, then the nodes of the first that touch the
   /// second.
@@ -45,10 +38,9 @@ class Dissection {
     const std::int32_t mark = ++marks_;
     for (const auto n : high) part_[n] = mark;
     const auto touches_high = [&](mesh::Node n) {
-      for (auto k = first_[n]; k < first_[n + 1]; ++k)
-        for (const auto neighbour : mesh_.cells[cell_[k]])
-          if (part_[neighbour] == mark) return true;
-      return false;
+      return std::ranges::any_of(around_.of(n), [&](std::int32_t cell) {
+        return std::ranges::any_of(mesh_.cells[cell], [&](mesh::Node other) { return part_[other] == mark; });
+      });
     };
     const auto separator =
         std::stable_partition(low.begin(), low.end(), [&](mesh::Node n) { return !touches_high(n); });
@@ -68,8 +60,8 @@ class Dissection {
   }
 
   const mesh::Mesh& mesh_;
+  solid::CellsOfNodes around_;
   std::vector<std::int32_t> part_;  ///< mark of the half a node was last put into
-  std::vector<std::int32_t> first_, cell_;
   std::int32_t marks_ = 0;
 };
 

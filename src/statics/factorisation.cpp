@@ -100,7 +100,7 @@ Eigen::VectorXd Factorisation::at_interface(const solid::Field& u) const {
   return u_i;
 }
 
-Factorisation::Load Factorisation::load(const Top& top) const {
+Factorisation::Load Factorisation::load(const TopDisplacement& top) const {
   const Eigen::VectorXd u_i =
       at_interface(solve(top, Eigen::VectorXd::Zero(2 * mesh_.interface_nodes.size())));
   Eigen::VectorXd g = condensed_ * u_i;
@@ -120,7 +120,7 @@ solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_
   return solve({held, held}, interface_force_N);
 }
 
-solid::Field Factorisation::solve(const Top& top, const Eigen::VectorXd& interface_force) const {
+solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::VectorXd& interface_force) const {
   SLIPFRONT_ASSERT(
       top.u_x_m.size() == mesh_.far_edge_nodes.size() && top.u_y_m.size() == mesh_.far_edge_nodes.size(),
       "size of the loaded edge");

@@ -32,16 +32,14 @@ class Factorisation {
   Factorisation(const Factorisation&) = delete;
   Factorisation& operator=(const Factorisation&) = delete;
 
-  using Top = TopDisplacement;
-
   /// S, N/m.
   const Eigen::MatrixXd& condensed_stiffness() const { return condensed_; }
   /// The loaded edge's displacements with the load g they send to the interface, N.
   struct Load {
-    Top top;
+    TopDisplacement top;
     Eigen::VectorXd g_N;
   };
-  Load load(const Top& top) const;
+  Load load(const TopDisplacement& top) const;
   /// Displacement of all nodes under the load for given displacements of the interface.
   solid::Field displacement(const Load& load, const Eigen::VectorXd& interface_u_m) const;
   /// The same under given forces on the interface, with the loaded edge held where it is. Both its
@@ -55,7 +53,7 @@ class Factorisation {
   /// In the order of dissection, the interface last. @return the number behind the last unknown of each block
   std::vector<std::int32_t> number_unknowns();
   void factorise(const solid::Material& material);
-  solid::Field solve(const Top& top, const Eigen::VectorXd& interface_force) const;
+  solid::Field solve(const TopDisplacement& top, const Eigen::VectorXd& interface_force) const;
   Eigen::VectorXd at_interface(const solid::Field& u) const;
 
   const mesh::Mesh& mesh_;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/interruption.hpp"
-#include "statics/libraries.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::statics {

@@ -22,19 +22,6 @@ solid::InteriorStencil square_stencil(const solid::Material& material) {
   return {.centre = 4 * K[0], .along = 2 * K[2], .across = 2 * K[6], .corner = K[4], .twist = K[5]};
 }
 
-bool is_square_in_place(const mesh::Mesh& mesh, const mesh::Cell& cell) {
-  const int stride = mesh.grid.stride();
-  const auto n = cell[0];
-  if (cell[1] != n + 1 || cell[2] != n + stride + 1 || cell[3] != n + stride) return false;
-  const double h = mesh.grid.spacing_m;
-  const std::array<double, 8> square = {0, 0, h, 0, h, h, 0, h};
-  for (int k = 0; k < 4; ++k)
-    if (std::abs(mesh.x_m[cell[k]] - mesh.x_m[n] - square[2 * k]) > 1e-9 * h ||
-        std::abs(mesh.y_m[cell[k]] - mesh.y_m[n] - square[2 * k + 1]) > 1e-9 * h)
-      return false;
-  return true;
-}
-
 /// Fills the places of rows in `level` from marks by row: with_stencil(i), else used(i), else unused.
 struct RowPlaces {
   GridLevel& level;
@@ -173,7 +160,7 @@ GridLevel make_level(const ElasticBody& plate) {
   std::vector<std::uint8_t> squares(mesh.n_nodes(), 0);
   constexpr std::uint8_t is_used = 0x80;
   for (const auto& cell : mesh.cells) {
-    const bool square = is_square_in_place(mesh, cell);
+    const bool square = solid::is_square_of_grid(mesh, mesh.grid, cell);
     for (const auto n : cell)
       squares[n] = static_cast<std::uint8_t>((squares[n] + (square ? 1 : 0)) | is_used);
     if (square) continue;

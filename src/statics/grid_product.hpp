@@ -92,17 +92,6 @@ class RowsBeside {
   GridField<T> field_;
 };
 
-/// Blocks of a level's block rows in the precision of the product.
-template <class T>
-std::vector<std::array<T, 4>> blocks_as(const solid::BlockRows& rows) {
-  std::vector<std::array<T, 4>> blocks;
-  blocks.reserve(rows.block.size());
-  for (const auto& b : rows.block)
-    blocks.push_back(
-        {static_cast<T>(b[0]), static_cast<T>(b[1]), static_cast<T>(b[2]), static_cast<T>(b[3])});
-  return blocks;
-}
-
 /// A sum in double precision of products computed in the precision T, in an order that only depends on the
 /// columns.
 template <class T>

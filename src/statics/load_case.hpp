@@ -28,7 +28,7 @@ class LoadCase {
   /// Its change with the shear.
   virtual Displacement displacement_per_shear() const = 0;
   /// Takes the solution of the same case on the next coarser level as the guess from which solve begins.
-  virtual void begin_from(const LoadCase& coarser) = 0;
+  virtual void begin_from(const LoadCase& /*coarser*/) {}
 
   Eigen::VectorXd u0, u1, f0, f1;
 };

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/lanes.hpp"
+#include "base/random.hpp"
 
 namespace slipfront::statics {
 
@@ -20,17 +21,42 @@ constexpr double smoothed_fraction = 0.1;
 constexpr double eigenvalue_margin = 1.05;
 constexpr std::size_t min_nodes_for_threads = 40000;  ///< of a level
 
-/// Reproducible numbers between -1/2 and 1/2.
-class RandomNumbers {
- public:
-  double operator()() {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state_ >> 11) / 9007199254740992.0 - 0.5;
-  }
+/// Restricts row r of a residual to the coarse columns.
+void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict r,
+                  float* __restrict c) {
+  // Cells that consist of two finer ones; the last may have three.
+  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
+  c[0] = r[0] + (n_pairs > 0 ? 0.5F * r[1] : 0.0F);
+  for (int I = 1; I < n_pairs; ++I) c[I] = r[2 * I] + 0.5F * (r[2 * I - 1] + r[2 * I + 1]);
+  if (n_pairs > 0) c[n_pairs] = r[2 * n_pairs] + 0.5F * r[2 * n_pairs - 1];
+  if (n_pairs == coarse_columns) return;
+  const int i = 2 * n_pairs;
+  const float w1 = t.weight[i + 1], w2 = t.weight[i + 2];
+  c[n_pairs] += (1 - w1) * r[i + 1] + (1 - w2) * r[i + 2];
+  c[n_pairs + 1] = w1 * r[i + 1] + w2 * r[i + 2] + r[i + 3];
+}
 
- private:
-  std::uint64_t state_ = 1;
-};
+/// u = start + interpolation of the values c at the coarse columns.
+void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
+                     const float* __restrict start, float* __restrict u) {
+  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
+  using V = SimdVectorOf<float>;
+  int I = 0;
+  for (; I + length<V> <= n_pairs; I += length<V>) {
+    const V here = load_as<V>(c + I), between = 0.5F * (here + load_as<V>(c + I + 1));
+    const auto [first, second] = interleaved(here, between);
+    store(u + 2 * I, V(load_as<V>(start + 2 * I) + first));
+    store(u + 2 * I + length<V>, V(load_as<V>(start + 2 * I + length<V>) + second));
+  }
+  for (; I < n_pairs; ++I) {
+    u[2 * I] = start[2 * I] + c[I];
+    u[2 * I + 1] = start[2 * I + 1] + 0.5F * (c[I] + c[I + 1]);
+  }
+  for (int i = 2 * n_pairs; i <= columns; ++i) {
+    const int left = t.left[i];
+    u[i] = start[i] + (1 - t.weight[i]) * c[left] + t.weight[i] * c[left + 1];
+  }
+}
 
 }  // namespace
 
@@ -40,8 +66,7 @@ struct Multigrid::Level {
   std::vector<mesh::Node> special;    ///< nodes with a separate interpolation, ascending
   GridField<float> special_residual;  ///< of these nodes
   std::vector<std::array<float, 4>> blocks;
-  std::vector<std::uint8_t> fixed;      ///< [block rows] bit 0: x, bit 1: y
-  std::vector<float> slip;              ///< [block rows] factor, 0 where the node does not slip
+  Conditions<float> conditions;
   std::vector<float> inverse_diagonal;  ///< [2 block rows], 0 where fixed
   double largest = 0;                   ///< eigenvalue of D^-1 K
   double damping = 1;                   ///< factor of D at the block rows
@@ -49,12 +74,13 @@ struct Multigrid::Level {
 
   Level(GridLevel g, bool is_finest)
       : grid(std::move(g)),
-        blocks(blocks_as<float>(grid.block)),
-        fixed(grid.block.size(), 0),
-        slip(grid.block.size(), 0.0F),
+        blocks(grid.block.block.size()),
+        conditions(grid.block.size()),
         inverse_diagonal(2 * grid.block.size(), 0.0F),
         u(grid.n_nodes()),
-        b(is_finest ? 0 : grid.n_nodes()) {}
+        b(is_finest ? 0 : grid.n_nodes()) {
+    for (std::size_t k = 0; k < blocks.size(); ++k) std::ranges::copy(grid.block.block[k], blocks[k].begin());
+  }
 
   Rows<float> u_rows() { return all_rows(u, grid); }
   Rows<float> b_rows() { return all_rows(b, grid); }
@@ -65,8 +91,9 @@ struct Multigrid::Level {
         if (grid.block.neighbour[k] != grid.block.node[r]) continue;
         const auto& d = grid.block.block[k];
         for (int c = 0; c < 2; ++c)
-          inverse_diagonal[2 * r + c] =
-              (fixed[r] >> c & 1) != 0 || d[3 * c] <= 0 ? 0 : static_cast<float>(1 / (damping * d[3 * c]));
+          inverse_diagonal[2 * r + c] = (conditions.fixed[r] >> c & 1) != 0 || d[3 * c] <= 0
+                                            ? 0
+                                            : static_cast<float>(1 / (damping * d[3 * c]));
       }
   }
 
@@ -76,7 +103,7 @@ struct Multigrid::Level {
   void for_products(int j, const Rows<const float>& field, float gain, Step&& step) const {
     const float inverse = gain / static_cast<float>(grid.stencil_of(j).centre);
     for_row_products<float>(
-        grid, blocks, slip.data(), j, field,
+        grid, blocks, conditions.slip.data(), j, field,
         [&](int i, const auto& a_x, const auto& a_y) { step(i, a_x, a_y, inverse, inverse); },
         [&](int i, std::int32_t r, float a_x, float a_y) {
           step(i, a_x, a_y, gain * inverse_diagonal[2 * r], gain * inverse_diagonal[2 * r + 1]);
@@ -117,112 +144,224 @@ struct Multigrid::Level {
 
   /// c1 of row j where u = 0.
   template <class B>
-  void begin_from_zero(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<float>& c) const;
+  void begin_from_zero(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<float>& c) const {
+    const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+    float* __restrict c_x = c.x(j), * __restrict c_y = c.y(j);
+    const float gain = gains.first / static_cast<float>(grid.stencil_of(j).centre);
+    for (int i = 0; i < grid.stride(); ++i) {
+      c_x[i] = gain * static_cast<float>(b_x[i]);
+      c_y[i] = gain * static_cast<float>(b_y[i]);
+    }
+    for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
+      const auto i = grid.block.node[r] - j * grid.stride();
+      c_x[i] = gains.first * inverse_diagonal[2 * r] * static_cast<float>(b_x[i]);
+      c_y[i] = gains.first * inverse_diagonal[2 * r + 1] * static_cast<float>(b_y[i]);
+    }
+  }
+
   /// u2 of row j where u = 0, from c1.
   template <class B>
   void end_from_zero(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<const float>& c,
-                     const Rows<float>& u2) const;
+                     const Rows<float>& u2) const {
+    const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+    const float *c_x = c.x(j), *c_y = c.y(j);
+    float *u_x = u2.x(j), *u_y = u2.y(j);
+    for_products(j, c, gains.second,
+                 [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                   const float kept = 1 + gains.keep;
+                   store(u_x + i, V(kept * load_as<V>(c_x + i) + inverse_x * (load_as<V>(b_x + i) - a_x)));
+                   store(u_y + i, V(kept * load_as<V>(c_y + i) + inverse_y * (load_as<V>(b_y + i) - a_y)));
+                 });
+    clear_fixed(j, u_x, u_y);
+  }
+
   /// c1 and u1 of row j.
   template <class B>
   void begin_smoothing(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<const float>& from,
-                       const Rows<float>& c, const Rows<float>& u1) const;
+                       const Rows<float>& c, const Rows<float>& u1) const {
+    const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+    const float *from_x = from.x(j), *from_y = from.y(j);
+    float *c_x = c.x(j), *c_y = c.y(j), *u_x = u1.x(j), *u_y = u1.y(j);
+    for_products(j, from, gains.first,
+                 [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                   const V x = inverse_x * (load_as<V>(b_x + i) - a_x),
+                           y = inverse_y * (load_as<V>(b_y + i) - a_y);
+                   store(c_x + i, x);
+                   store(c_y + i, y);
+                   store(u_x + i, V(load_as<V>(from_x + i) + x));
+                   store(u_y + i, V(load_as<V>(from_y + i) + y));
+                 });
+  }
+
   /// u2 of row j from c1 and u1; returns the row's part of rhs . u2.
   template <class B>
   double end_smoothing(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<const float>& c,
-                       const Rows<const float>& u1, const Rows<float>& u2) const;
+                       const Rows<const float>& u1, const Rows<float>& u2) const {
+    const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+    const float *c_x = c.x(j), *c_y = c.y(j), *v_x = u1.x(j), *v_y = u1.y(j);
+    float *u_x = u2.x(j), *u_y = u2.y(j);
+    RowSum<float> sum;
+    for_products(
+        j, u1, gains.second,
+        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+          const V r_x = load_as<V>(b_x + i), r_y = load_as<V>(b_y + i);
+          const V x = load_as<V>(v_x + i) + gains.keep * load_as<V>(c_x + i) + inverse_x * (r_x - a_x);
+          const V y = load_as<V>(v_y + i) + gains.keep * load_as<V>(c_y + i) + inverse_y * (r_y - a_y);
+          store(u_x + i, x);
+          store(u_y + i, y);
+          sum.add(r_x, x);  // of fixed displacements both are 0
+          sum.add(r_y, y);
+        });
+    clear_unused(grid, j, u_x, u_y);
+    return sum.value();
+  }
+
   /// rhs - K v of row j.
   template <class B>
-  void residual(int j, const Rows<const B>& rhs, const Rows<const float>& v, float* r_x, float* r_y) const;
+  void residual(int j, const Rows<const B>& rhs, const Rows<const float>& v, float* r_x, float* r_y) const {
+    const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+    for_row_products<float>(
+        grid, blocks, conditions.slip.data(), j, v,
+        [&]<class V>(int i, const V& a_x, const V& a_y) {
+          store(r_x + i, V(load_as<V>(b_x + i) - a_x));
+          store(r_y + i, V(load_as<V>(b_y + i) - a_y));
+        },
+        [&](int i, std::int32_t, float a_x, float a_y) {
+          r_x[i] = static_cast<float>(b_x[i]) - a_x;
+          r_y[i] = static_cast<float>(b_y[i]) - a_y;
+        });
+    clear_fixed(j, r_x, r_y);
+  }
+
+  /// Restricts row j of the residual r to the right-hand side of the next coarser level, to `rows` of it.
+  void add_restricted(int j, const float* r_x, const float* r_y, std::vector<float>& coarse_row,
+                      threads::LoopChunk rows, Level& coarse) const {
+    const auto& t = transfer;
+    const float w = t.y.weight[j];
+    const int below = t.y.left[j];
+    const auto coarse_b = coarse.b_rows();
+    for (int component = 0; component < 2; ++component) {
+      float* __restrict c = coarse_row.data();
+      restrict_row(t.x, grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
+      const auto add = [&](int J, float weight) {
+        if (weight == 0 || J < rows.begin || J >= rows.end) return;
+        float* __restrict to = component == 0 ? coarse_b.x(J) : coarse_b.y(J);
+        for (int I = 0; I < coarse.grid.stride(); ++I) to[I] += weight * c[I];
+      };
+      add(below, 1 - w);
+      add(below + 1, w);
+    }
+  }
+  void add_special_residuals(Level& coarse) const {
+    std::size_t k = 0;
+    for (const auto& [n, entries] : transfer.special) {
+      for (const auto& e : entries) {
+        coarse.b.x[e.coarse] += e.weight * special_residual.x[k];
+        coarse.b.y[e.coarse] += e.weight * special_residual.y[k];
+      }
+      ++k;
+    }
+  }
+
+  /// Row j of u with the interpolation of the coarser level's.
+  void prolong(const float* u_x, const float* u_y, Level& coarse, int j, std::vector<float>& coarse_row,
+               const Rows<float>& to) const {
+    const auto& t = transfer;
+    const auto coarse_u = coarse.u_rows();
+    const float w = t.y.weight[j];
+    const int below = t.y.left[j];
+    for (int component = 0; component < 2; ++component) {
+      const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
+      const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
+      float* __restrict c = coarse_row.data();
+      if (w != 0)
+        for (int I = 0; I < coarse.grid.stride(); ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
+      interpolate_row(t.x, grid.columns, coarse.grid.columns, w == 0 ? e0 : c, component == 0 ? u_x : u_y,
+                      component == 0 ? to.x(j) : to.y(j));
+    }
+    for_special(j, [&](std::size_t k, int i) {
+      float x = u_x[i], y = u_y[i];
+      for (const auto& e : t.special.at(special[k])) {
+        x += e.weight * coarse.u.x[e.coarse];
+        y += e.weight * coarse.u.y[e.coarse];
+      }
+      to.x(j)[i] = x;
+      to.y(j)[i] = y;
+    });
+    clear_fixed(j, to.x(j), to.y(j));
+  }
+
+  void damp_block_rows() {
+    // Distorted cells have larger eigenvalues than the squares, in modes of a few nodes that a power
+    // iteration on the whole level would miss. So it is done on the block rows alone, and D is enlarged
+    // there.
+    const auto& rows = grid.block;
+    set_diagonal();
+    std::vector<std::int32_t> row_of(rows.neighbour.size());
+    for (std::size_t k = 0; k < row_of.size(); ++k) row_of[k] = grid.block_row(rows.neighbour[k]);
+    std::vector<double> v(2 * rows.size()), product(2 * rows.size());
+    Random random(1);
+    for (double& value : v) value = random();
+    double eigenvalue = 0;
+    constexpr int iterations = 60;
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+      double norm = 0;
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        double x = 0, y = 0;
+        for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+          if (row_of[k] < 0) continue;
+          const auto& K = rows.block[k];
+          x += K[0] * v[2 * row_of[k]] + K[1] * v[2 * row_of[k] + 1];
+          y += K[2] * v[2 * row_of[k]] + K[3] * v[2 * row_of[k] + 1];
+        }
+        product[2 * r] = inverse_diagonal[2 * r] * x;
+        product[2 * r + 1] = inverse_diagonal[2 * r + 1] * y;
+        norm += product[2 * r] * product[2 * r] + product[2 * r + 1] * product[2 * r + 1];
+      }
+      norm = std::sqrt(norm);
+      eigenvalue = norm;  // of a vector of norm 1, but for the first
+      for (std::size_t k = 0; k < v.size(); ++k) v[k] = product[k] / norm;
+    }
+    damping = std::max(1.0, eigenvalue / largest_smoothed_eigenvalue(grid));
+    set_diagonal();
+  }
+
+  void estimate_largest_eigenvalue() {
+    Random random(1);
+    GridField<float> next(grid.n_nodes());
+    for (std::size_t n = 0; n < grid.n_nodes(); ++n) {
+      u.x[n] = static_cast<float>(random());
+      u.y[n] = static_cast<float>(random());
+    }
+    for (const auto n : grid.unused) u.x[n] = u.y[n] = 0;
+    double norm_before = 0;
+    constexpr int iterations = 8;
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+      const auto from = u_rows().as_const();
+      const auto to = all_rows(next, grid);
+      double norm = 0;
+      for (int j = 0; j <= grid.rows; ++j) {
+        float *to_x = to.x(j), *to_y = to.y(j);
+        RowSum<float> sum;
+        for_products(j, from, 1,
+                     [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                       const V x = inverse_x * a_x, y = inverse_y * a_y;
+                       store(to_x + i, x);
+                       store(to_y + i, y);
+                       sum.add(x, x);
+                       sum.add(y, y);
+                     });
+        norm += sum.value();
+      }
+      std::swap(u, next);
+      if (iteration + 1 == iterations) largest = std::sqrt(norm / norm_before);
+      norm_before = norm;
+    }
+    largest = std::max(largest, largest_smoothed_eigenvalue(grid));
+    std::ranges::fill(u.x, 0.0F);
+    std::ranges::fill(u.y, 0.0F);
+  }
 };
-
-template <class B>
-void Multigrid::Level::begin_from_zero(int j, const Gains& gains, const Rows<const B>& rhs,
-                                       const Rows<float>& c) const {
-  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
-  float* __restrict c_x = c.x(j), * __restrict c_y = c.y(j);
-  const float gain = gains.first / static_cast<float>(grid.stencil_of(j).centre);
-  for (int i = 0; i < grid.stride(); ++i) {
-    c_x[i] = gain * static_cast<float>(b_x[i]);
-    c_y[i] = gain * static_cast<float>(b_y[i]);
-  }
-  for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
-    const auto i = grid.block.node[r] - j * grid.stride();
-    c_x[i] = gains.first * inverse_diagonal[2 * r] * static_cast<float>(b_x[i]);
-    c_y[i] = gains.first * inverse_diagonal[2 * r + 1] * static_cast<float>(b_y[i]);
-  }
-}
-
-template <class B>
-void Multigrid::Level::end_from_zero(int j, const Gains& gains, const Rows<const B>& rhs,
-                                     const Rows<const float>& c, const Rows<float>& u2) const {
-  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
-  const float *c_x = c.x(j), *c_y = c.y(j);
-  float *u_x = u2.x(j), *u_y = u2.y(j);
-  for_products(j, c, gains.second,
-               [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                 const float kept = 1 + gains.keep;
-                 store(u_x + i, V(kept * load_as<V>(c_x + i) + inverse_x * (load_as<V>(b_x + i) - a_x)));
-                 store(u_y + i, V(kept * load_as<V>(c_y + i) + inverse_y * (load_as<V>(b_y + i) - a_y)));
-               });
-  clear_fixed(j, u_x, u_y);
-}
-
-template <class B>
-void Multigrid::Level::begin_smoothing(int j, const Gains& gains, const Rows<const B>& rhs,
-                                       const Rows<const float>& from, const Rows<float>& c,
-                                       const Rows<float>& u1) const {
-  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
-  const float *from_x = from.x(j), *from_y = from.y(j);
-  float *c_x = c.x(j), *c_y = c.y(j), *u_x = u1.x(j), *u_y = u1.y(j);
-  for_products(j, from, gains.first,
-               [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                 const V x = inverse_x * (load_as<V>(b_x + i) - a_x),
-                         y = inverse_y * (load_as<V>(b_y + i) - a_y);
-                 store(c_x + i, x);
-                 store(c_y + i, y);
-                 store(u_x + i, V(load_as<V>(from_x + i) + x));
-                 store(u_y + i, V(load_as<V>(from_y + i) + y));
-               });
-}
-
-template <class B>
-double Multigrid::Level::end_smoothing(int j, const Gains& gains, const Rows<const B>& rhs,
-                                       const Rows<const float>& c, const Rows<const float>& u1,
-                                       const Rows<float>& u2) const {
-  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
-  const float *c_x = c.x(j), *c_y = c.y(j), *v_x = u1.x(j), *v_y = u1.y(j);
-  float *u_x = u2.x(j), *u_y = u2.y(j);
-  RowSum<float> sum;
-  for_products(j, u1, gains.second,
-               [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                 const V r_x = load_as<V>(b_x + i), r_y = load_as<V>(b_y + i);
-                 const V x = load_as<V>(v_x + i) + gains.keep * load_as<V>(c_x + i) + inverse_x * (r_x - a_x);
-                 const V y = load_as<V>(v_y + i) + gains.keep * load_as<V>(c_y + i) + inverse_y * (r_y - a_y);
-                 store(u_x + i, x);
-                 store(u_y + i, y);
-                 sum.add(r_x, x);  // of fixed displacements both are 0
-                 sum.add(r_y, y);
-               });
-  clear_unused(grid, j, u_x, u_y);
-  return sum.value();
-}
-
-template <class B>
-void Multigrid::Level::residual(int j, const Rows<const B>& rhs, const Rows<const float>& v, float* r_x,
-                                float* r_y) const {
-  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
-  for_row_products<float>(
-      grid, blocks, slip.data(), j, v,
-      [&]<class V>(int i, const V& a_x, const V& a_y) {
-        store(r_x + i, V(load_as<V>(b_x + i) - a_x));
-        store(r_y + i, V(load_as<V>(b_y + i) - a_y));
-      },
-      [&](int i, std::int32_t, float a_x, float a_y) {
-        r_x[i] = static_cast<float>(b_x[i]) - a_x;
-        r_y[i] = static_cast<float>(b_y[i]) - a_y;
-      });
-  clear_fixed(j, r_x, r_y);
-}
 
 /// What a thread needs for its sweeps.
 struct Multigrid::Workspace {
@@ -255,8 +394,8 @@ Multigrid::Multigrid(GridLevel finest, threads::Team& team) : team_(team) {
   }
   int reach = 1;
   for (const auto& level : levels_) {
-    damp_block_rows(*level);
-    estimate_largest_eigenvalue(*level);
+    level->damp_block_rows();
+    level->estimate_largest_eigenvalue();
     reach = std::max(reach, level->grid.reach);
   }
   workspace_.assign(team.size(), Workspace(reach, grid(0).stride()));
@@ -271,6 +410,14 @@ const GridLevel& Multigrid::grid(int level) const {
   return levels_[level]->grid;
 }
 
+const std::vector<std::array<float, 4>>& Multigrid::blocks(int level) const {
+  return levels_[level]->blocks;
+}
+
+const std::vector<float>& Multigrid::slip(int level) const {
+  return levels_[level]->conditions.slip;
+}
+
 const Transfer& Multigrid::transfer(int finer_level) const {
   return levels_[finer_level]->transfer;
 }
@@ -279,33 +426,24 @@ const GridField<float>& Multigrid::z() const {
   return levels_[top_level_]->u;
 }
 
-void Multigrid::prescribe(const BoundaryNodes& boundary, int first) {
+void Multigrid::prescribe(const Conditions<double>& conditions, int first) {
   top_level_ = first;
-  for (std::size_t l = first; l < levels_.size(); ++l) {
+  auto& top = *levels_[first];
+  top.conditions.fixed = conditions.fixed;
+  std::ranges::copy(conditions.slip, top.conditions.slip.begin());
+  top.set_diagonal();
+  for (std::size_t l = first + 1; l < levels_.size(); ++l) {
     auto& level = *levels_[l];
-    std::ranges::fill(level.fixed, std::uint8_t{0});
-    std::ranges::fill(level.slip, 0.0F);
-    if (l == static_cast<std::size_t>(first)) {
-      const auto block_row = [&](mesh::Node n) {
-        const auto r = level.grid.block_row(n);
-        SLIPFRONT_ASSERT(r >= 0, "a node with a condition is not on the boundary");
-        return r;
-      };
-      for (const auto n : boundary.fixed_x) level.fixed[block_row(n)] |= 1;
-      for (const auto n : boundary.fixed_y) level.fixed[block_row(n)] |= 2;
-      for (const auto& slip : boundary.slip)
-        level.slip[block_row(slip.node)] = static_cast<float>(slip.factor);
-    } else {
-      const auto& finer = *levels_[l - 1];
-      const auto& t = finer.transfer;
-      for (std::size_t r = 0; r < level.fixed.size(); ++r) {
-        const auto n = level.grid.block.node[r];
-        const auto finer_row = finer.grid.block_row(
-            finer.grid.node(t.x.place[n % level.grid.stride()], t.y.place[n / level.grid.stride()]));
-        if (finer_row < 0) continue;
-        level.fixed[r] = finer.fixed[finer_row];
-        level.slip[r] = finer.slip[finer_row];
-      }
+    const auto& finer = *levels_[l - 1];
+    const auto& t = finer.transfer;
+    level.conditions = Conditions<float>(level.grid.block.size());
+    for (std::size_t r = 0; r < level.grid.block.size(); ++r) {
+      const auto n = level.grid.block.node[r];
+      const auto finer_row = finer.grid.block_row(
+          finer.grid.node(t.x.place[n % level.grid.stride()], t.y.place[n / level.grid.stride()]));
+      if (finer_row < 0) continue;
+      level.conditions.fixed[r] = finer.conditions.fixed[finer_row];
+      level.conditions.slip[r] = finer.conditions.slip[finer_row];
     }
     level.set_diagonal();
   }
@@ -330,43 +468,6 @@ double Multigrid::cycle(std::size_t l, const Rows<const B>& b) {
 
 namespace {
 
-/// Restricts row r of a residual to the coarse columns.
-void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict r,
-                  float* __restrict c) {
-  // Cells that consist of two finer ones; the last may have three.
-  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
-  c[0] = r[0] + (n_pairs > 0 ? 0.5F * r[1] : 0.0F);
-  for (int I = 1; I < n_pairs; ++I) c[I] = r[2 * I] + 0.5F * (r[2 * I - 1] + r[2 * I + 1]);
-  if (n_pairs > 0) c[n_pairs] = r[2 * n_pairs] + 0.5F * r[2 * n_pairs - 1];
-  if (n_pairs == coarse_columns) return;
-  const int i = 2 * n_pairs;
-  const float w1 = t.weight[i + 1], w2 = t.weight[i + 2];
-  c[n_pairs] += (1 - w1) * r[i + 1] + (1 - w2) * r[i + 2];
-  c[n_pairs + 1] = w1 * r[i + 1] + w2 * r[i + 2] + r[i + 3];
-}
-
-/// u = start + interpolation of the values c at the coarse columns.
-void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
-                     const float* __restrict start, float* __restrict u) {
-  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
-  using V = SimdVectorOf<float>;
-  int I = 0;
-  for (; I + length<V> <= n_pairs; I += length<V>) {
-    const V here = load_as<V>(c + I), between = 0.5F * (here + load_as<V>(c + I + 1));
-    const auto [first, second] = interleaved(here, between);
-    store(u + 2 * I, V(load_as<V>(start + 2 * I) + first));
-    store(u + 2 * I + length<V>, V(load_as<V>(start + 2 * I + length<V>) + second));
-  }
-  for (; I < n_pairs; ++I) {
-    u[2 * I] = start[2 * I] + c[I];
-    u[2 * I + 1] = start[2 * I + 1] + 0.5F * (c[I] + c[I + 1]);
-  }
-  for (int i = 2 * n_pairs; i <= columns; ++i) {
-    const int left = t.left[i];
-    u[i] = start[i] + (1 - t.weight[i]) * c[left] + t.weight[i] * c[left + 1];
-  }
-}
-
 /// Takes rows [begin, end) through three steps. A step of a row needs the step before of the rows within
 /// K's reach, so it follows by that much, and the earlier steps begin and end so much further out.
 template <class First, class Second, class Third>
@@ -383,36 +484,6 @@ void sweep(const GridLevel& grid, int begin, int end, First&& first, Second&& se
 }
 
 }  // namespace
-
-void Multigrid::add_restricted(const Level& fine, int j, const float* r_x, const float* r_y,
-                               std::vector<float>& coarse_row, threads::LoopChunk rows, Level& coarse) {
-  const auto& t = fine.transfer;
-  const float w = t.y.weight[j];
-  const int below = t.y.left[j];
-  const auto b = coarse.b_rows();
-  for (int component = 0; component < 2; ++component) {
-    float* __restrict c = coarse_row.data();
-    restrict_row(t.x, fine.grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
-    const auto add = [&](int J, float weight) {
-      if (weight == 0 || J < rows.begin || J >= rows.end) return;
-      float* __restrict to = component == 0 ? b.x(J) : b.y(J);
-      for (int I = 0; I < coarse.grid.stride(); ++I) to[I] += weight * c[I];
-    };
-    add(below, 1 - w);
-    add(below + 1, w);
-  }
-}
-
-void Multigrid::add_special_residuals(const Level& fine, Level& coarse) {
-  std::size_t k = 0;
-  for (const auto& [n, entries] : fine.transfer.special) {
-    for (const auto& e : entries) {
-      coarse.b.x[e.coarse] += e.weight * fine.special_residual.x[k];
-      coarse.b.y[e.coarse] += e.weight * fine.special_residual.y[k];
-    }
-    ++k;
-  }
-}
 
 template <class B>
 void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
@@ -457,38 +528,11 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
         }
         r_x[i] = r_y[i] = 0;
       });
-      add_restricted(fine, j, r_x, r_y, work.coarse_row, own, coarse);
+      fine.add_restricted(j, r_x, r_y, work.coarse_row, own, coarse);
     };
     sweep(grid, begin, end, first_step, second_step, restrict_residual);
   });
-  add_special_residuals(fine, coarse);
-}
-
-void Multigrid::prolong(const Level& fine, const float* u_x, const float* u_y, Level& coarse, int j,
-                        std::vector<float>& coarse_row, const Rows<float>& to) {
-  const auto& t = fine.transfer;
-  const auto coarse_u = coarse.u_rows();
-  const float w = t.y.weight[j];
-  const int below = t.y.left[j];
-  for (int component = 0; component < 2; ++component) {
-    const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
-    const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
-    float* __restrict c = coarse_row.data();
-    if (w != 0)
-      for (int I = 0; I < coarse.grid.stride(); ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
-    interpolate_row(t.x, fine.grid.columns, coarse.grid.columns, w == 0 ? e0 : c, component == 0 ? u_x : u_y,
-                    component == 0 ? to.x(j) : to.y(j));
-  }
-  fine.for_special(j, [&](std::size_t k, int i) {
-    float x = u_x[i], y = u_y[i];
-    for (const auto& e : t.special.at(fine.special[k])) {
-      x += e.weight * coarse.u.x[e.coarse];
-      y += e.weight * coarse.u.y[e.coarse];
-    }
-    to.x(j)[i] = x;
-    to.y(j)[i] = y;
-  });
-  fine.clear_fixed(j, to.x(j), to.y(j));
+  fine.add_special_residuals(coarse);
 }
 
 template <class B>
@@ -508,8 +552,8 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
     team_.meet(n_parts);
 
     const auto prolong_row = [&](int j) {
-      prolong(fine, work.beside.x(u.as_const(), j), work.beside.y(u.as_const(), j), coarse, j,
-              work.coarse_row, start);
+      fine.prolong(work.beside.x(u.as_const(), j), work.beside.y(u.as_const(), j), coarse, j, work.coarse_row,
+                   start);
     };
     const auto first_step = [&](int j) {
       fine.begin_smoothing(j, gains, b, start.as_const(), change, smoothed);
@@ -520,77 +564,6 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
     sweep(grid, own.begin, own.end, prolong_row, first_step, second_step);
   });
   return std::accumulate(row_sum_.begin(), row_sum_.begin() + grid.rows + 1, 0.0);
-}
-
-void Multigrid::damp_block_rows(Level& level) {
-  // Distorted cells have larger eigenvalues than the squares, in modes of a few nodes that a power iteration
-  // on the whole level would miss. So it is done on the block rows alone, and D is enlarged there.
-  const auto& rows = level.grid.block;
-  level.set_diagonal();
-  std::vector<std::int32_t> row_of(rows.neighbour.size());
-  for (std::size_t k = 0; k < row_of.size(); ++k) row_of[k] = level.grid.block_row(rows.neighbour[k]);
-  std::vector<double> u(2 * rows.size()), product(2 * rows.size());
-  RandomNumbers random;
-  for (double& value : u) value = random();
-  double largest = 0;
-  constexpr int iterations = 60;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    double norm = 0;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      double x = 0, y = 0;
-      for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
-        if (row_of[k] < 0) continue;
-        const auto& b = rows.block[k];
-        x += b[0] * u[2 * row_of[k]] + b[1] * u[2 * row_of[k] + 1];
-        y += b[2] * u[2 * row_of[k]] + b[3] * u[2 * row_of[k] + 1];
-      }
-      product[2 * r] = level.inverse_diagonal[2 * r] * x;
-      product[2 * r + 1] = level.inverse_diagonal[2 * r + 1] * y;
-      norm += product[2 * r] * product[2 * r] + product[2 * r + 1] * product[2 * r + 1];
-    }
-    norm = std::sqrt(norm);
-    largest = norm;  // of a vector of norm 1, but for the first
-    for (std::size_t k = 0; k < u.size(); ++k) u[k] = product[k] / norm;
-  }
-  level.damping = std::max(1.0, largest / largest_smoothed_eigenvalue(level.grid));
-  level.set_diagonal();
-}
-
-void Multigrid::estimate_largest_eigenvalue(Level& level) {
-  const auto& grid = level.grid;
-  RandomNumbers random;
-  GridField<float> next(grid.n_nodes());
-  for (std::size_t n = 0; n < grid.n_nodes(); ++n) {
-    level.u.x[n] = static_cast<float>(random());
-    level.u.y[n] = static_cast<float>(random());
-  }
-  for (const auto n : grid.unused) level.u.x[n] = level.u.y[n] = 0;
-  double norm_before = 0;
-  constexpr int iterations = 8;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    const auto from = level.u_rows().as_const();
-    const auto to = all_rows(next, grid);
-    double norm = 0;
-    for (int j = 0; j <= grid.rows; ++j) {
-      float *to_x = to.x(j), *to_y = to.y(j);
-      RowSum<float> sum;
-      level.for_products(j, from, 1,
-                         [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                           const V x = inverse_x * a_x, y = inverse_y * a_y;
-                           store(to_x + i, x);
-                           store(to_y + i, y);
-                           sum.add(x, x);
-                           sum.add(y, y);
-                         });
-      norm += sum.value();
-    }
-    std::swap(level.u, next);
-    if (iteration + 1 == iterations) level.largest = std::sqrt(norm / norm_before);
-    norm_before = norm;
-  }
-  level.largest = std::max(level.largest, largest_smoothed_eigenvalue(grid));
-  std::ranges::fill(level.u.x, 0.0F);
-  std::ranges::fill(level.u.y, 0.0F);
 }
 
 void Multigrid::factorise_coarsest() {

@@ -11,15 +11,14 @@
 
 namespace slipfront::statics {
 
-/// Conditions on nodes of the boundary: displacements that are prescribed, and nodes that slip, where instead
-/// of f_x = 0 the equation is f_x + factor f_y = 0.
-struct BoundaryNodes {
-  std::vector<mesh::Node> fixed_x, fixed_y;
-  struct Slip {
-    mesh::Node node;
-    double factor;
-  };
-  std::vector<Slip> slip;
+/// Conditions on the nodes of a level's block rows: displacements that are prescribed, and nodes that slip,
+/// where instead of f_x = 0 the equation is f_x + factor f_y = 0. [block rows]
+template <class T>
+struct Conditions {
+  std::vector<std::uint8_t> fixed;  ///< bit 0: x, bit 1: y
+  std::vector<T> slip;              ///< factor, 0 where the node does not slip
+
+  explicit Conditions(std::size_t n) : fixed(n, 0), slip(n, T(0)) {}
 };
 
 /// One geometric multigrid cycle for the stiffness of a plate, or of two bodies, with prescribed
@@ -41,7 +40,7 @@ class Multigrid {
 
   /// Prescribes what happens at a level's boundary, and begins cycles there from now on; a coarse node is
   /// fixed or slips where the finer node at its place does.
-  void prescribe(const BoundaryNodes& boundary, int level = 0);
+  void prescribe(const Conditions<double>& conditions, int level);
 
   /// z = B r on the level last prescribed; 0 at fixed displacements.
   /// @return r . z
@@ -51,6 +50,9 @@ class Multigrid {
 
   int n_levels() const { return static_cast<int>(levels_.size()); }
   const GridLevel& grid(int level) const;
+  /// Blocks of a level's block rows in single precision, and factors of slip as they were last prescribed.
+  const std::vector<std::array<float, 4>>& blocks(int level) const;
+  const std::vector<float>& slip(int level) const;
   const Transfer& transfer(int finer_level) const;
   /// Parts into which the work on a level is cut: one, or one for each thread.
   int parts(int level) const;
@@ -63,17 +65,8 @@ class Multigrid {
   double cycle(std::size_t l, const Rows<const B>& b);
   template <class B>
   void smooth_and_restrict(std::size_t l, const Rows<const B>& b);
-  /// Restricts row j of the residual r to the coarse right-hand side, to `rows` of it.
-  static void add_restricted(const Level& fine, int j, const float* r_x, const float* r_y,
-                             std::vector<float>& coarse_row, threads::LoopChunk rows, Level& coarse);
-  static void add_special_residuals(const Level& fine, Level& coarse);
   template <class B>
   double prolong_and_smooth(std::size_t l, const Rows<const B>& b);
-  /// Row j of u with the interpolation of the coarse level's.
-  static void prolong(const Level& fine, const float* u_x, const float* u_y, Level& coarse, int j,
-                      std::vector<float>& coarse_row, const Rows<float>& to);
-  void damp_block_rows(Level& level);
-  void estimate_largest_eigenvalue(Level& level);
   void factorise_coarsest();
   template <class B>
   double solve_coarsest(const Rows<const B>& b);

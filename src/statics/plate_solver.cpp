@@ -82,7 +82,6 @@ class CondensedLoadCase : public LoadCase {
     load.g_N += shear * unit_shear_.g_N;
     return interface_->displacement(load, u0 + shear * u1);
   }
-  void begin_from(const LoadCase&) override {}
   Displacement displacement_per_shear() const override { return interface_->displacement(unit_shear_, u1); }
 
  private:
@@ -118,9 +117,6 @@ class DirectSolver : public PlateSolver {
     return held_plate_->n_unknowns() + (base_ ? base_->n_unknowns() : 0);
   }
   double bytes() const override { return held_plate_->factor_bytes() + (base_ ? base_->factor_bytes() : 0); }
-  bool iterates() const override { return false; }
-  int n_cycles() const override { return 0; }
-  int n_levels() const override { return 1; }
   std::vector<std::size_t> interface_of(int) const override {
     std::vector<std::size_t> all(mesh_.interface_nodes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});

@@ -60,7 +60,7 @@ class PlateSolver {
   virtual std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top,
                                               EdgeMotion motion, const DisplacementOfBodies* start,
                                               int level) = 0;
-  virtual int n_levels() const = 0;
+  virtual int n_levels() const { return 1; }
   /// Interface nodes of a level, as places in mesh.interface_nodes.
   virtual std::vector<std::size_t> interface_of(int level) const = 0;
   virtual std::int64_t n_unknowns() const = 0;
@@ -68,9 +68,9 @@ class PlateSolver {
   virtual double bytes() const = 0;
   /// Whether each solution only costs what it has to change of the last one, so that beginning with the
   /// states of a similar case pays.
-  virtual bool iterates() const = 0;
+  virtual bool iterates() const { return false; }
   /// Multigrid cycles on the finest level so far; 0 where there are none.
-  virtual int n_cycles() const = 0;
+  virtual int n_cycles() const { return 0; }
 };
 
 /// Up to here a factorisation is chosen by StaticSolver::automatic: elements of 0.333 mm on the paper's plate

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 namespace slipfront::statics {
+
+/// What the solvers take their dense and sparse algebra from: "Eigen 3.4.0".
+std::string algebra_library();
 
 inline constexpr const char* interrupted_in_statics = "interrupted in the statics";
 

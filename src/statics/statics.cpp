@@ -53,30 +53,26 @@ struct InterfaceNodes {
   std::vector<double> x_m, gap_m, tributary_m;
 };
 
+template <class T>
+std::vector<T> at_places(const std::vector<T>& all, const std::vector<std::size_t>& places) {
+  std::vector<T> some;
+  for (const auto place : places) some.push_back(all[place]);
+  return some;
+}
+
 InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const mesh::Mesh* base,
                                const std::vector<std::size_t>& places) {
-  const auto tributary_m = mesh::tributary_lengths_m(mesh);
-  const auto gap_m = gaps_m(mesh, base);
-  InterfaceNodes nodes;
-  for (const auto place : places) {
-    nodes.x_m.push_back(mesh.x_m[mesh.interface_nodes[place]]);
-    nodes.gap_m.push_back(gap_m[place]);
-    nodes.tributary_m.push_back(tributary_m[place]);
-  }
+  InterfaceNodes nodes{
+      {}, at_places(gaps_m(mesh, base), places), at_places(mesh::tributary_lengths_m(mesh), places)};
+  for (const auto place : places) nodes.x_m.push_back(mesh.x_m[mesh.interface_nodes[place]]);
   return nodes;
 }
 
-/// The states at some of the nodes.
 ContactStates at_places(const ContactStates& all, const std::vector<std::size_t>& places) {
-  ContactStates some;
-  for (const auto place : places) {
-    some.support.contact.push_back(all.support.contact[place]);
-    some.support.slip_sign.push_back(all.support.slip_sign[place]);
-    some.support.anchor_x_m.push_back(all.support.anchor_x_m[place]);
-    some.support.mu_s.push_back(all.support.mu_s[place]);
-    some.has_touched.push_back(all.has_touched[place]);
-  }
-  return some;
+  const auto& [contact, slip_sign, anchor_x_m, mu_s] = all.support;
+  return {{at_places(contact, places), at_places(slip_sign, places), at_places(anchor_x_m, places),
+           at_places(mu_s, places)},
+          at_places(all.has_touched, places)};
 }
 
 /// Gives each node the contact state of the coarse node nearest to it along the interface.
@@ -286,40 +282,48 @@ Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double
   return e;
 }
 
-/// Finds contact states on the coarser levels of the solver, each from the next coarser one, and gives the
-/// finest the last ones and their displacement to begin from. `make_case(level)` makes the load case of a
-/// level, settle_coarse(problem) settles its states.
-/// @return whether there are any.
-template <class MakeCase, class SettleCoarse>
-bool begin_on_coarse_levels(const mesh::Mesh& mesh, const mesh::Mesh* base, const PlateSolver& solver,
-                            const ContactStates& start, MakeCase&& make_case, SettleCoarse&& settle_coarse,
-                            LoadCase& finest, ContactStates& states) {
+/// The finest level's contact, settled at a shear.
+struct Settled {
+  std::unique_ptr<ContactProblem> problem;
+  double shear = 0;
+};
+
+/// Finds contact states, and the shear. On the coarser levels of an iterative solver, each begins from the
+/// next coarser one; the finest begins from the last of them and its displacement. `make_case(level)` makes
+/// the load case of a level, settle(problem, accuracy, final) settles its states as the function above does.
+template <class MakeCase, class Settle>
+Settled settle_on_levels(const mesh::Mesh& mesh, const mesh::Mesh* base, const PlateSolver& solver,
+                         const ContactStates& start, MakeCase&& make_case, Settle&& settle,
+                         LoadCase& finest) {
   std::unique_ptr<LoadCase> coarser;
   ContactStates coarser_states;
   std::vector<std::size_t> coarser_places;
-  for (int level = solver.n_levels() - 1; level > 0; --level) {
+  const auto begin = [&](LoadCase& plate, int level) {
     const auto places = solver.interface_of(level);
-    auto plate = make_case(level);
-    auto here = at_places(start, places);
+    auto states = at_places(start, places);
     if (coarser) {
-      plate->begin_from(*coarser);
-      take_nearest(coarser_states, coarser_places, places, here);
+      plate.begin_from(*coarser);
+      take_nearest(coarser_states, coarser_places, places, states);
     }
-    ContactProblem problem(interface_nodes(mesh, base, places), *plate, std::move(here));
+    return std::make_unique<ContactProblem>(interface_nodes(mesh, base, places), plate, std::move(states));
+  };
+  for (int level = solver.n_levels() - 1; level > 0; --level) {
+    auto plate = make_case(level);
+    const auto problem = begin(*plate, level);
     try {
-      settle_coarse(problem);
+      settle(*problem, first_accuracy, guess_accuracy);
     } catch (const UserError&) {  // what is impossible on a coarse level need not be so on the next
       coarser.reset();
       continue;
     }
     coarser = std::move(plate);
-    coarser_states = problem.states;
-    coarser_places = places;
+    coarser_states = problem->states;
+    coarser_places = solver.interface_of(level);
   }
-  if (!coarser) return false;
-  finest.begin_from(*coarser);
-  take_nearest(coarser_states, coarser_places, solver.interface_of(0), states);
-  return true;
+  Settled settled{begin(finest, 0)};
+  const double accuracy = coarser ? guess_accuracy : solver.iterates() ? first_accuracy : final_accuracy;
+  settled.shear = settle(*settled.problem, accuracy, final_accuracy);
+  return settled;
 }
 
 TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
@@ -343,17 +347,16 @@ DisplacementOfBodies displacement_of(const Equilibrium& e) {
   return {&e.u_m, &e.below_u_m};
 }
 
-/// Nodes without a gap stick where they are.
-ContactStates states_before(const std::vector<double>& gap_m, const std::vector<double>& mu_s) {
-  const std::size_t n = gap_m.size();
-  ContactStates states{{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0),
-                        std::vector<double>(n, 0.0), mu_s},
-                       std::vector<std::uint8_t>(n, 0)};
-  for (std::size_t k = 0; k < n; ++k) {
-    states.support.contact[k] = gap_m[k] > 0 ? Contact::open : Contact::stick;
-    states.has_touched[k] = states.support.contact[k] == Contact::stick;
+/// Nodes in contact stick.
+ContactStates sticking(std::vector<Contact> contact, std::vector<double> anchor_x_m,
+                       const std::vector<double>& mu_s) {
+  std::vector<std::uint8_t> has_touched;
+  for (auto& state : contact) {
+    if (state != Contact::open) state = Contact::stick;
+    has_touched.push_back(state != Contact::open);
   }
-  return states;
+  std::vector<double> slip_sign(contact.size(), 0.0);
+  return {{std::move(contact), std::move(slip_sign), std::move(anchor_x_m), mu_s}, std::move(has_touched)};
 }
 
 }  // namespace
@@ -397,28 +400,24 @@ void Statics::press_down(double compliance_m_per_Pa) {
   };
   auto plate = make_case(0);
 
-  const auto start = states_before(gaps_m(mesh, base_mesh_), mu_s_);
   bool reached = true;
-  const auto press_m = [&](const ContactProblem& problem) {
-    const double found = force_N_per_m ? problem.shear_at(&ContactProblem::p_Pa, *force_N_per_m) : 0.0;
-    reached = std::isfinite(found);
-    return reached ? found : 0.0;
+  const auto settle_problem = [&](ContactProblem& problem, double accuracy, double final) {
+    const auto press_m = [&] {
+      const double found = force_N_per_m ? problem.shear_at(&ContactProblem::p_Pa, *force_N_per_m) : 0.0;
+      reached = std::isfinite(found);
+      return reached ? found : 0.0;
+    };
+    return settle(
+        problem, loading_, accuracy, final, press_m, [](std::size_t) { return true; }, may_continue_);
   };
-  const auto may_slip = [](std::size_t) { return true; };
-  double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;
-  auto states = start;
-  const auto settle_coarse = [&](ContactProblem& coarse) {
-    settle(
-        coarse, loading_, first_accuracy, guess_accuracy, [&] { return press_m(coarse); }, may_slip,
-        may_continue_);
-  };
-  if (begin_on_coarse_levels(mesh, base_mesh_, *solver_, start, make_case, settle_coarse, *plate, states))
-    accuracy = guess_accuracy;
-  ContactProblem problem(interface_nodes(mesh, base_mesh_, solver_->interface_of(0)), *plate,
-                         std::move(states));
-  const double pressed_m = settle(
-      problem, loading_, accuracy, final_accuracy, [&] { return press_m(problem); }, may_slip, may_continue_);
-  tilted_ = make_equilibrium(problem, pressed_m, loading_.edge_margin_m);
+  std::vector<Contact> contact;
+  for (const double gap_m : gaps_m(mesh, base_mesh_))
+    contact.push_back(gap_m > 0 ? Contact::open : Contact::stick);
+  const std::vector<double> in_place(contact.size(), 0.0);
+  const auto [problem, pressed_m] =
+      settle_on_levels(mesh, base_mesh_, *solver_, sticking(std::move(contact), in_place, mu_s_), make_case,
+                       settle_problem, *plate);
+  tilted_ = make_equilibrium(*problem, pressed_m, loading_.edge_margin_m);
   tilted_.shear_m = 0;
   loading_.tilt_left_m += pressed_m;
   loading_.tilt_right_m += pressed_m;
@@ -458,38 +457,24 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
         },
         [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); }, may_continue_);
   };
-  ContactStates states;
-  double accuracy = final_accuracy;
+  Settled settled;
   if (last_) {
-    states = *last_;
+    const auto all = solver_->interface_of(0);
+    settled.problem =
+        std::make_unique<ContactProblem>(interface_nodes(mesh_, base_mesh_, all), *sheared_, *last_);
+    settled.shear = settle_problem(*settled.problem, final_accuracy, final_accuracy);
   } else {
-    const std::size_t n = mesh_.interface_nodes.size();
-    states = {{tilted_.contact, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), mu_s_},
-              std::vector<std::uint8_t>(n, 0)};
-    states.support.anchor_x_m = tilted_u_x_m_;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (tilted_.contact[k] != Contact::open) states.support.contact[k] = Contact::stick;
-      states.has_touched[k] = tilted_.contact[k] != Contact::open;
-    }
-    if (solver_->iterates()) accuracy = first_accuracy;
-    const auto start = states;
     const auto tilted_u = displacement_of(tilted_);
     const auto make_case = [&](int level) {
       return solver_->load_case(TopConstraint::both, tilted_top_, EdgeMotion::along_x, &tilted_u, level);
     };
-    const auto settle_coarse = [&](ContactProblem& coarse) {
-      settle_problem(coarse, first_accuracy, guess_accuracy);
-    };
-    if (begin_on_coarse_levels(mesh_, base_mesh_, *solver_, start, make_case, settle_coarse, *sheared_,
-                               states))
-      accuracy = guess_accuracy;
+    settled = settle_on_levels(mesh_, base_mesh_, *solver_, sticking(tilted_.contact, tilted_u_x_m_, mu_s_),
+                               make_case, settle_problem, *sheared_);
   }
-  ContactProblem problem(interface_nodes(mesh_, base_mesh_, solver_->interface_of(0)), *sheared_,
-                         std::move(states));
-  const double shear = settle_problem(problem, accuracy, final_accuracy);
-  if (solver_->iterates()) last_ = problem.states;
+  const auto& [problem, shear] = settled;
+  if (solver_->iterates()) last_ = problem->states;
 
-  Equilibrium e = make_equilibrium(problem, shear, loading_.edge_margin_m);
+  Equilibrium e = make_equilibrium(*problem, shear, loading_.edge_margin_m);
   auto u = sheared_->displacement(shear), per_shear = sheared_->displacement_per_shear();
   e.u_m = std::move(u.above);
   e.below_u_m = std::move(u.below);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <system_error>
+#include <thread>
 #include <utility>
 
 #include "base/error.hpp"
@@ -23,30 +23,9 @@ void pause() {
 
 }  // namespace
 
-Wavefront::Wavefront(int threads, int depth) : depth_(depth) {
+Wavefront::Wavefront(int threads, int depth)
+    : depth_(depth), team_(threads), ended_(std::make_unique<Progress[]>(team_.size())) {
   SLIPFRONT_ASSERT(threads >= 1 && depth >= 1, "a wavefront needs a thread and a step");
-  ended_ = std::make_unique<Progress[]>(static_cast<std::size_t>(threads));
-  try {
-    for (int thread = 1; thread < threads; ++thread) workers_.emplace_back([this, thread] { work(thread); });
-  } catch (const std::system_error&) {
-    // No more threads to be had: those that are there do the work.
-  }
-}
-
-Wavefront::~Wavefront() {
-  closing_ = true;
-  ++task_number_;
-  task_number_.notify_all();
-}
-
-void Wavefront::work(int thread) {
-  for (std::int64_t done = 0;; ++done) {
-    task_number_.wait(done);
-    if (closing_) return;
-    take_groups(thread);
-    --working_;
-    working_.notify_one();
-  }
 }
 
 std::int64_t Wavefront::run(std::int64_t first, std::int64_t n, int units, const Unit& unit) {
@@ -55,15 +34,7 @@ std::int64_t Wavefront::run(std::int64_t first, std::int64_t n, int units, const
   failed_ = false;
   for (int thread = 0; thread < threads(); ++thread) ended_[static_cast<std::size_t>(thread)].value = 0;
   // One group alone needs no other thread.
-  const bool alone = n <= depth_ || workers_.empty();
-  if (!alone) {
-    working_ = static_cast<int>(workers_.size());
-    ++task_number_;
-    task_number_.notify_all();
-  }
-  take_groups(0);
-  if (!alone)
-    for (int left = working_; left > 0; left = working_) working_.wait(left);
+  team_.run(n <= depth_ ? 1 : threads(), [this](int thread) { take_groups(thread); });
   if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return end_ - first;
 }

@@ -6,8 +6,8 @@
 #include <exception>
 #include <functional>
 #include <memory>
-#include <thread>
-#include <vector>
+
+#include "threads/team.hpp"
 
 namespace slipfront::threads {
 
@@ -24,12 +24,9 @@ class Wavefront {
   using Unit = std::function<bool(std::int64_t step, int unit)>;
 
   Wavefront(int threads, int depth);
-  ~Wavefront();
-  Wavefront(const Wavefront&) = delete;
-  Wavefront& operator=(const Wavefront&) = delete;
 
   /// As many as asked for, or fewer if no more are available.
-  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+  int threads() const { return team_.size(); }
   int depth() const { return depth_; }
   /// Steps that may be under way at a time: steps that differ by this much never are.
   int max_steps() const { return threads() * depth_; }
@@ -50,20 +47,16 @@ class Wavefront {
     const Unit* unit = nullptr;
   };
 
-  void work(int thread);
   void take_groups(int thread);
   bool wait_for(int thread, std::int64_t value) const;
 
   int depth_;
+  Team team_;
   std::unique_ptr<Progress[]> ended_;  ///< [threads]
   Task task_;
   std::atomic<std::int64_t> end_ = 0;  ///< step before which the run ends
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;
-  std::atomic<std::int64_t> task_number_ = 0;
-  std::atomic<int> working_ = 0;
-  bool closing_ = false;
-  std::vector<std::jthread> workers_;
 };
 
 }  // namespace slipfront::threads

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/random.hpp"
 #include "interface/interface.hpp"
 #include "one_node.hpp"
-#include "support/random.hpp"
 
 namespace slipfront::interface {
 namespace {
@@ -151,7 +151,7 @@ TEST(Contact, TellsWhetherAnyNodeChanged) {
 
 TEST(Contact, ObeysItsConditionsWhateverTheTrial) {
   // Signorini's and Coulomb's conditions at the step's end, and friction that never drives.
-  slipfront::test::Random random(1);
+  slipfront::Random random(1);
   const int n = 10000;
   Interface s(n);
   for (int i = 0; i < n; ++i) {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "base/random.hpp"
 #include "one_node.hpp"
-#include "support/random.hpp"
 
 namespace slipfront::interface {
 namespace {
@@ -108,7 +108,7 @@ TEST(PredictorCorrector, WorksWithEachLawAndForm) {
 }
 
 TEST(PredictorCorrector, ObeysItsConditionsWhateverTheTrial) {
-  slipfront::test::Random random(1);
+  slipfront::Random random(1);
   const int n = 10000;
   Interface s(n);
   for (int i = 0; i < n; ++i) {

@@ -3,71 +3,27 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "solid/element.hpp"
+
 namespace slipfront::mesh {
 namespace {
 
-using Corners = Eigen::Matrix<double, 4, 2>;
-
-Corners corners(const Mesh& mesh, const Cell& cell) {
-  Corners at;
-  for (int a = 0; a < 4; ++a) at.row(a) << mesh.x_m[cell[a]], mesh.y_m[cell[a]];
-  return at;
-}
-
-double cross(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-/// Largest eigenvalue of the element's M^-1 K for unit modulus and density.
-double largest_eigenvalue(const Corners& at) {
-  constexpr double nu = 0.37;
-  Eigen::Matrix3d elasticity;
-  elasticity << 1, nu, 0, nu, 1, 0, 0, 0, (1 - nu) / 2;
-  elasticity /= 1 - nu * nu;
-  const Eigen::RowVector4d xi_node(-1, 1, 1, -1);
-  const Eigen::RowVector4d eta_node(-1, -1, 1, 1);
-  Eigen::Matrix<double, 8, 8> stiffness = Eigen::Matrix<double, 8, 8>::Zero();
-  Eigen::Matrix<double, 8, 1> mass = Eigen::Matrix<double, 8, 1>::Zero();
-  for (const double xi : {-std::sqrt(1.0 / 3), std::sqrt(1.0 / 3)})
-    for (const double eta : {-std::sqrt(1.0 / 3), std::sqrt(1.0 / 3)}) {
-      const Eigen::RowVector4d along = Eigen::RowVector4d::Ones() + xi * xi_node;
-      const Eigen::RowVector4d across = Eigen::RowVector4d::Ones() + eta * eta_node;
-      Eigen::Matrix<double, 2, 4> local;
-      local << 0.25 * xi_node.cwiseProduct(across), 0.25 * eta_node.cwiseProduct(along);
-      const Eigen::Matrix2d jacobian = local * at;
-      const double det = jacobian.determinant();
-      const Eigen::Matrix<double, 2, 4> gradient = jacobian.inverse() * local;
-      Eigen::Matrix<double, 3, 8> strain = Eigen::Matrix<double, 3, 8>::Zero();
-      for (int a = 0; a < 4; ++a) {
-        strain(0, 2 * a) = strain(2, 2 * a + 1) = gradient(0, a);
-        strain(1, 2 * a + 1) = strain(2, 2 * a) = gradient(1, a);
-        const double share = 0.25 * along[a] * across[a] * det;
-        mass[2 * a] += share;
-        mass[2 * a + 1] += share;
-      }
-      stiffness += det * strain.transpose() * elasticity * strain;
-    }
-  const auto scale = mass.cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd scaled = scale * stiffness * scale;
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .maxCoeff();
+/// Of a to b with c to d.
+double cross(const Mesh& mesh, Node a, Node b, Node c, Node d) {
+  return (mesh.x_m[b] - mesh.x_m[a]) * (mesh.y_m[d] - mesh.y_m[c]) -
+         (mesh.y_m[b] - mesh.y_m[a]) * (mesh.x_m[d] - mesh.x_m[c]);
 }
 
 }  // namespace
 
 double area_m2(const Mesh& mesh) {
   double area = 0;
-  for (const Cell& cell : mesh.cells) {
-    const Corners at = corners(mesh, cell);
-    area += 0.5 * cross(at.row(2) - at.row(0), at.row(3) - at.row(1));
-  }
+  for (const auto& [a, b, c, d] : mesh.cells) area += 0.5 * cross(mesh, a, c, b, d);
   return area;
 }
 
@@ -138,12 +94,10 @@ void expect_mirror_symmetry(const Mesh& mesh) {
 
 void expect_one_piece(const Mesh& mesh) {
   double least_jacobian_m2 = std::numeric_limits<double>::infinity();  // positive for convex cells
-  for (const Cell& cell : mesh.cells) {
-    const Corners at = corners(mesh, cell);
+  for (const Cell& cell : mesh.cells)
     for (int a = 0; a < 4; ++a)
-      least_jacobian_m2 = std::min(least_jacobian_m2,
-                                   cross(at.row((a + 1) % 4) - at.row(a), at.row((a + 3) % 4) - at.row(a)));
-  }
+      least_jacobian_m2 =
+          std::min(least_jacobian_m2, cross(mesh, cell[a], cell[(a + 1) % 4], cell[a], cell[(a + 3) % 4]));
   EXPECT_GT(least_jacobian_m2, 0);
 
   const std::vector<bool> orphan = orphans(mesh);
@@ -165,16 +119,9 @@ void expect_one_piece(const Mesh& mesh) {
 
 double relative_stable_step(const Mesh& mesh) {
   const double h = mesh.grid.spacing_m;
-  Corners square;
-  square << 0, 0, h, 0, h, h, 0, h;
-  double largest = 0;
-  for (const Cell& cell : mesh.cells) {
-    Corners at = corners(mesh, cell);
-    at.rowwise() -= Eigen::RowVector2d(at.row(0));
-    if ((at - square).cwiseAbs().maxCoeff() > 1e-9 * h)  // the many regular cells need no eigenvalues
-      largest = std::max(largest, largest_eigenvalue(at));
-  }
-  return std::sqrt(largest_eigenvalue(square) / std::max(largest, largest_eigenvalue(square)));
+  const double of_square = solid::cell_frequency_rad_per_s({0, 0, h, 0, h, h, 0, h}, {});
+  const std::vector<bool> all(mesh.cells.size(), true);
+  return of_square / std::max(of_square, solid::largest_cell_frequency_rad_per_s(mesh, {}, all));
 }
 
 }  // namespace slipfront::mesh

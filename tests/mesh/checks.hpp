@@ -29,10 +29,8 @@ std::vector<int> valences(const Mesh& mesh);
 /// exactly.
 void expect_mirror_symmetry(const Mesh& mesh);
 
-/// The largest free-vibration frequency of a cell (2x2 Gauss points, plane stress, nu = 0.37, row-sum lumped
-/// mass) over all cells, as the regular square's frequency divided by it: a lower bound of the stable time
-/// step relative to the regular mesh's (the largest frequency of a mesh is at most that of its stiffest
-/// cell).
+/// The regular square's frequency over the largest one of a cell: a lower bound of the stable time step
+/// relative to the regular mesh's.
 double relative_stable_step(const Mesh& mesh);
 
 }  // namespace slipfront::mesh

@@ -76,9 +76,6 @@ TEST_P(Graded, TheTransitionDoesNotShortenTheStep) {
   if (std::get<0>(GetParam()) == Corner::none) {
     // Its worst cell is the square of the smaller side; rounding of the eigenvalues.
     EXPECT_NEAR(relative_stable_step(mesh_), 1, 1e-12);
-    const auto q = quality(mesh_);
-    EXPECT_NEAR(q.min_angle_deg, 45, 1e-9);
-    EXPECT_NEAR(q.max_angle_deg, 135, 1e-9);
   } else {
     EXPECT_GT(relative_stable_step(mesh_), 0.6);  // the least of a fillet, see fillet_test
   }

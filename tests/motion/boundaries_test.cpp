@@ -78,7 +78,7 @@ TEST(Periodic, PlateHasNoSeam) {
   };
   const auto orphan = mesh::orphans(mesh);
   solid::Field v(mesh.n_nodes()), v_moved(mesh.n_nodes());
-  support::Random random(3);
+  Random random(3);
   for (mesh::Node n = 0; n < mesh.far_edge_nodes.front(); ++n) {
     if (orphan[n]) continue;
     v_moved.x[moved(n)] = v.x[n] = random();

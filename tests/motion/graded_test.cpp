@@ -101,7 +101,7 @@ TEST_P(GradedPlate, FlightDoesNotGrow) {
       Stepper(mesh_, {.stiffness_damping_s = 0}, support::paper_law, time_).lowest_step_s();
   Stepper stepper(mesh_, {.stiffness_damping_s = 0.05 * undamped_s}, support::paper_law, time_);
   ASSERT_EQ(stepper.step_s() > stepper.lowest_step_s(), time_.local_steps);
-  support::Random random(11);
+  Random random(11);
   auto rough = support::random_flight(mesh_, 11, 0, 0, 0.01);
   for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
     rough.u_per_shear.x[n] = random(), rough.u_per_shear.y[n] = random();

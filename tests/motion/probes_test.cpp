@@ -36,7 +36,7 @@ mesh::Mesh small_plate(Corner corner, int coarsenings = 0, mesh::Sides sides = m
 
 /// Places all over a plate, off its nodes; with a body below also in that.
 std::vector<ProbePlace> scattered(bool below = false) {
-  test::Random random(5);
+  Random random(5);
   std::vector<ProbePlace> places;
   for (int k = 0; k < 40; ++k) {
     const double height_m = below && k % 2 == 0 ? -0.036 : 0.036;

@@ -303,7 +303,7 @@ struct RandomSlip {
   }
 
   static constexpr std::size_t n = 60;
-  support::Random random;
+  Random random;
   interface::Interface state;
   statics::Equilibrium before;
 };

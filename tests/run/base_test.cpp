@@ -68,7 +68,7 @@ TEST(Base, SnapshotsHoldBothBodies) {
   const auto snapshots = run_from(config, initial, go_on).event.snapshots;
   ASSERT_EQ(snapshots.size(), 1U);
   mesh::Mesh mesh;
-  whole_snapshot_mesh({initial.mesh, initial.base}).slabs.for_each([&](const mesh::Slab& slab) {
+  whole_snapshot_mesh({initial.mesh, initial.base}).slabs.visit(0, [&](const mesh::Slab& slab) {
     mesh = slab.mesh;
   });
   ASSERT_EQ(snapshots.front().u_m.size(), mesh.x_m.size());

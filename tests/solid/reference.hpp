@@ -24,7 +24,6 @@ namespace slipfront::solid::reference {
 using test::flat;
 using test::max_abs;
 using test::name_of;
-using test::Random;
 
 inline Eigen::Matrix3d elasticity(const Material& m) {
   // The inverse of the compliance, so that nothing is shared with the code under test.
@@ -89,17 +88,8 @@ inline double area_m2(const mesh::Mesh& mesh) {
 }
 
 /// K over all nodes, loaded edge included, x and y of each node in turn.
-inline Eigen::SparseMatrix<double> assembled_stiffness(const mesh::Mesh& mesh, const Material& m) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& cell : mesh.cells) {
-    const Eigen::MatrixXd K = stiffness(cell_coordinates(mesh, cell), m, 2);
-    for (int a = 0; a < 8; ++a)
-      for (int b = 0; b < 8; ++b)
-        entries.emplace_back(2 * cell[a / 2] + a % 2, 2 * cell[b / 2] + b % 2, K(a, b));
-  }
-  Eigen::SparseMatrix<double> K(2 * mesh.n_nodes(), 2 * mesh.n_nodes());
-  K.setFromTriplets(entries.begin(), entries.end());
-  return K;
+inline test::Sparse assembled_stiffness(const mesh::Mesh& mesh, const Material& m) {
+  return test::assembled(mesh, [&](const CellCoordinates& c) { return stiffness(c, m, 2); });
 }
 
 /// A plate of 40 mm x 20 mm with 1 mm cells.

@@ -74,8 +74,8 @@ TEST_P(FactorisedPlate, CondensedStiffnessIsTheSchurComplement) {
 }
 
 TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
-  test::Random random(7);
-  Factorisation::Top edge;
+  Random random(7);
+  TopDisplacement edge;
   for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
     edge.u_x_m.push_back(random());
     edge.u_y_m.push_back(random());

@@ -13,7 +13,7 @@ struct Cells {
   std::vector<CellUnknowns> unknowns;
   std::vector<solid::CellStiffness> stiffness;
 
-  void add(const CellUnknowns& cell, test::Random& random) {
+  void add(const CellUnknowns& cell, Random& random) {
     const Eigen::MatrixXd A = Eigen::MatrixXd::NullaryExpr(8, 8, [&] { return random(); });
     const Eigen::MatrixXd K = A * A.transpose() + Eigen::MatrixXd::Identity(8, 8);
     unknowns.push_back(cell);
@@ -37,7 +37,7 @@ struct Cells {
 /// Two halves that do not touch, one of them in two blocks, a separator and a last block; unknown 11 touches
 /// the last block alone, one cell is prescribed throughout.
 Cells some_cells() {
-  test::Random random(3);
+  Random random(3);
   Cells cells;
   cells.add({0, 1, 2, 3, 4, 5, 10, -1}, random);
   cells.add({6, 7, 8, 9, 10, -1, 12, 13}, random);
@@ -63,7 +63,7 @@ TEST(FrontalCholesky, SolvesAsADenseFactorDoesAndGivesTheSchurComplementWithoutT
   EXPECT_LE(test::max_abs(*S - schur), 1e-13 * test::max_abs(schur));
   EXPECT_EQ(test::max_abs(*S - S->transpose()), 0);
   K.diagonal().tail(n_last) += springs;
-  test::Random random(4);
+  Random random(4);
   const Eigen::VectorXd f = Eigen::VectorXd::NullaryExpr(n_some, [&] { return random(); });
   std::vector<double> x(f.data(), f.data() + n_some);
   factor.solve(x);

@@ -235,23 +235,6 @@ TEST(Statics, TellsTheUserWhatCannotBe) {
   EXPECT_THAT(error_of([&] { nothing_inside.shear_to(1); }), HasSubstr("no shear brings t/p inside"));
 }
 
-TEST(VaryingFriction, OfOneValueIsTheUniformOne) {
-  const auto mesh = paper_plate(4e-3);
-  const Statics uniform(mesh, {}, {}, mu_s);
-  const Statics varying({mesh, pmma}, std::nullopt, {}, uniform_mu_s(mesh));
-  for (const double share : {0.9, 1.001}) {
-    const auto a = uniform.shear_to(share), b = varying.shear_to(share);
-    EXPECT_EQ(a.shear_m, b.shear_m);
-    EXPECT_EQ(flat(a.u_m), flat(b.u_m));
-    EXPECT_EQ(flat(a.u_per_shear), flat(b.u_per_shear));
-    EXPECT_EQ(a.tractions.t_s_Pa, b.tractions.t_s_Pa);
-    EXPECT_EQ(a.tractions.p_s_Pa, b.tractions.p_s_Pa);
-    EXPECT_EQ(a.contact, b.contact);
-    EXPECT_EQ(a.peak_ratio, b.peak_ratio);
-    EXPECT_EQ(a.peak_x_m, b.peak_x_m);
-  }
-}
-
 class FrictionAlong : public ::testing::Test {
  protected:
   /// mu_s as a function of x.

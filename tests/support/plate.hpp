@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "base/random.hpp"
 #include "mesh/plate.hpp"
 #include "solid/operator.hpp"
-#include "support/random.hpp"
 
 namespace slipfront::test {
 

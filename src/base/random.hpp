@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace slipfront::test {
+namespace slipfront {
 
 /// Reproducible numbers in [-1, 1).
 class Random {
@@ -18,4 +18,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace slipfront::test
+}  // namespace slipfront
