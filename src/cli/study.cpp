@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "base/error.hpp"

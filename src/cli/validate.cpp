@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
+#include <memory>
 #include <utility>
 
 #include "base/error.hpp"

@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <utility>
 
-#include "base/error.hpp"
 #include "input/entries.hpp"
 
 namespace slipfront::input {
