@@ -11,10 +11,12 @@ from slipfront.command import REFUSED, report_error, run
 from slipfront.errors import Error
 from slipfront.program import program
 
-#: By name, the module whose `main(arguments)` returns the exit code. It is imported when it is wanted.
+#: By their words, the module whose `main(arguments)` returns the exit code. It is imported when it is wanted.
 COMMANDS = {
     "fronts": "slipfront.fronts_command",
     "report": "slipfront.report.command",
+    "study convergence": "slipfront.study.convergence",
+    "study interface-step": "slipfront.study.interface_step",
     "sweep": "slipfront.sweep.command",
 }
 USAGE = f"usage: python -m slipfront {{{','.join(COMMANDS)}}} ARGS; COMMAND --help prints them"
@@ -30,13 +32,18 @@ def missing(name: str, package: str) -> str:
     return f"{name}: needs the Python package {package}: install it with '{how}'"
 
 
+def command_in(arguments: list[str]) -> str:
+    """The command that the first arguments name; empty where they name none."""
+    return next((name for n in (1, 2) if (name := " ".join(arguments[:n])) in COMMANDS), "")
+
+
 def main(arguments: list[str]) -> int:
-    """Exit code of the command that the first argument names."""
+    """Exit code of the command that the first arguments name."""
     if arguments[:1] in (["--help"], ["-h"]):
         return run("slipfront", lambda: [USAGE])
-    name = arguments[0] if arguments else ""
-    if name not in COMMANDS:
-        report_error("slipfront", f"no Python command '{name}'; {USAGE}" if name else USAGE)
+    name = command_in(arguments)
+    if not name:
+        report_error("slipfront", f"no Python command '{arguments[0]}'; {USAGE}" if arguments else USAGE)
         return REFUSED
     try:
         module = importlib.import_module(COMMANDS[name])
@@ -49,7 +56,7 @@ def main(arguments: list[str]) -> int:
         how = "in the sources, 'make module' builds it; elsewhere 'pip install .' does"
         report_error("slipfront", f"{name}: needs the compiled module of the Python package: {how}")
         return REFUSED
-    code: int = module.main(arguments[1:])
+    code: int = module.main(arguments[len(name.split()) :])
     return code
 
 
@@ -59,7 +66,7 @@ def console() -> int:
     It takes the place of this process, so that signals and streams are its own.
     """
     arguments = sys.argv[1:]
-    if arguments and arguments[0] in COMMANDS:
+    if command_in(arguments):
         return main(arguments)
     try:
         file = program()

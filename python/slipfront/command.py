@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TextIO
+from typing import Any, NoReturn, TextIO
 
 from slipfront.files import DataError, NoRoom, one_line, open_file
 
@@ -60,7 +60,11 @@ class Output:
 
 
 class Parser(argparse.ArgumentParser):
-    """Ends with exit code 1 where its help cannot be written."""
+    """Ends with exit code 1 where its help cannot be written; a wrong command line is told in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        report_error(self.prog, f"{message}; see {self.prog} --help")
+        sys.exit(REFUSED)
 
     def print_help(self, file: Any = None) -> None:
         output = Output()
@@ -82,8 +86,8 @@ def run(name: str, work: Callable[[], list[str]], output: Output | None = None) 
     except DataError as error:
         report_error(name, str(error))
         return NOT_WRITTEN if isinstance(error, NoRoom) else REFUSED
-    except KeyboardInterrupt:
-        report_error(name, "interrupted")
+    except KeyboardInterrupt as error:
+        report_error(name, str(error) or "interrupted")
         return INTERRUPTED
     except RuntimeError as error:
         if str(error) != "can't start new thread":

@@ -10,9 +10,13 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
+from slipfront import command
 from slipfront.files import DataError, exists, is_folder, open_file, read_text
 
 LIST = "checksums.sha256"
@@ -93,6 +97,41 @@ def belongs(path: Path) -> bool:
     """Whether a file that a set may lack is there, or is in the list and so should be."""
     sums = read_list(path.parent)
     return path.name in sums if sums is not None else exists(located(path))
+
+
+def end_publication(folder: Path) -> None:
+    """Moves a complete set, whose move may have been cut off, to its place; its list comes last."""
+    publishing = inside(folder, PUBLISHING)
+    if not is_folder(publishing):
+        return
+    for file in sorted(publishing.iterdir(), key=lambda file: file.name == LIST):
+        os.replace(file, folder / file.name)
+    publishing.rmdir()
+
+
+@contextmanager
+def publication(folder: Path, others: Mapping[str, str]) -> Iterator[Path]:
+    """A folder to write a set of files into. At the end they appear in `folder` together, with their list;
+    earlier ones stay until then.
+
+    others: SHA-256 of files elsewhere that belong to the set."""
+    made = inside(folder, UNFINISHED)
+    try:
+        end_publication(folder)
+        shutil.rmtree(made, ignore_errors=True)
+        made.mkdir()
+        yield made
+        sums = {file.name: sha256(file) for file in sorted(made.iterdir())} | dict(others)
+        (made / LIST).write_text(
+            "".join(f"{value}  {name}\n" for name, value in sums.items()), encoding="utf-8"
+        )
+        for file in made.iterdir():
+            with open(file, "rb") as stream:
+                os.fsync(stream.fileno())
+        os.rename(made, folder / PUBLISHING)
+        end_publication(folder)
+    except OSError as error:
+        raise command.not_written(folder, error) from None
 
 
 def lists_under(folder: Path) -> list[Path]:

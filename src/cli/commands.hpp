@@ -39,7 +39,15 @@ class CaseArguments {
   const input::Case& read() const { return case_file().config(); }
   /// See input::CaseFile.
   const std::vector<std::string>& notes() const { return case_file().notes(); }
-  UserError with_place(const UserError& error) const { return case_file().with_place(error); }
+  /// Does work on the case; its errors get their place in the file.
+  template <class Work>
+  auto placing_errors(Work&& work) const {
+    try {
+      return work();
+    } catch (const UserError& error) {
+      throw case_file().with_place(error);
+    }
+  }
 
  private:
   const input::CaseFile& case_file() const;

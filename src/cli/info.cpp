@@ -197,18 +197,9 @@ void add_shared(const run::Info::Shared& shared, Listing& list) {
   list.add("  own columns, of the event", fmt::format("{:.0f} %", 100 * shared.efficiency));
 }
 
-run::Info info_of(const CaseArguments& arguments, const input::Case& config,
-                  const std::optional<int>& n_processes) {
-  try {
-    return run::info(config, n_processes);
-  } catch (const UserError& error) {
-    throw arguments.with_place(error);
-  }
-}
-
 void print_info(const CaseArguments& arguments, const std::optional<int>& n_processes) {
   const input::Case& config = arguments.read();
-  const auto info = info_of(arguments, config, n_processes);
+  const auto info = arguments.placing_errors([&] { return run::info(config, n_processes); });
   Listing list;
   if (!config.title.empty()) list.add("title", files::one_line(config.title));
   add_wave_speeds(info, list);

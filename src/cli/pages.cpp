@@ -140,8 +140,8 @@ std::string man_page(const CommandDescription& program) {
       "Computes how sliding begins when an elastic body is pressed and sheared on a rigid plane or on "
       "another "
       "body:\nstatics, contact, friction, explicit motion, and the speeds of slip fronts. Case files are "
-      "TOML "
-      "in SI units;\n.B {0} keys\nprints all keys.\n.SH OPTIONS\n{1}.SH COMMANDS\n",
+      "TOML in "
+      "SI units;\n.B {0} keys\nprints all keys.\n.SH OPTIONS\n{1}.SH COMMANDS\n",
       program.name, man_options(program));
   for (const auto& command : program.subcommands)
     page += man_command(command, program.name + " " + command.name);

@@ -21,14 +21,21 @@ namespace slipfront::cli {
 namespace {
 
 struct PythonCommand {
+  const char* group;  ///< subcommand that it belongs to; null: the program
   const char* name;
   const char* description;
 };
 
 constexpr std::array python_commands = {
-    PythonCommand{"report", "Write a page (HTML) to look at a run, a study or a reproduction in a browser"},
-    PythonCommand{"fronts", "Find fronts in a history of slip along an interface, from any source"},
-    PythonCommand{"sweep", "Run a case over values of its keys, and compare"}};
+    PythonCommand{nullptr, "report",
+                  "Write a page (HTML) to look at a run, a study or a reproduction in a browser"},
+    PythonCommand{nullptr, "fronts", "Find fronts in a history of slip along an interface, from any source"},
+    PythonCommand{nullptr, "sweep", "Run a case over values of its keys, and compare"},
+    PythonCommand{"study", "convergence",
+                  "Front speeds over element size, interface step and damping, with their limits"},
+    PythonCommand{"study", "interface-step",
+                  "Error of the front speeds against the cost of sub-cycling the interface; the cheapest way "
+                  "within a tolerance"}};
 
 /// Tells in one line what is missing. The folder that the program is called in is no place for packages.
 constexpr const char* start_of_package = R"(import os, sys
@@ -78,13 +85,19 @@ void put_first_on_python_path(const fs::path& folder) {
 }  // namespace
 
 void add_python_commands(CLI::App& app) {
-  for (const PythonCommand& command : python_commands)
-    app.add_subcommand(command.name, command.description)->group("Results, in Python");
+  for (const auto& [group, name, description] : python_commands)
+    if (group == nullptr)
+      app.add_subcommand(name, description)->group("Results, in Python");
+    else
+      app.get_subcommand(group)->add_subcommand(name, description);
 }
 
 static bool is_python_command(int argc, char** argv) {
-  const auto names = [&](const PythonCommand& command) { return std::string_view(argv[1]) == command.name; };
-  return argc >= 2 && std::any_of(python_commands.begin(), python_commands.end(), names);
+  const auto is_at = [&](int k, std::string_view word) { return k < argc && word == argv[k]; };
+  return std::ranges::any_of(python_commands, [&](const PythonCommand& command) {
+    const bool is_in_group = command.group != nullptr;
+    return (!is_in_group || is_at(1, command.group)) && is_at(is_in_group ? 2 : 1, command.name);
+  });
 }
 
 void become_python_command(int argc, char** argv) {

@@ -7,10 +7,11 @@
 /// so that signals and exit codes are the module's own; only the module knows its arguments.
 namespace slipfront::cli {
 
-/// Registers them for the help. Their work is `become_python_command`, before the command line is parsed.
+/// Registers them for the help, behind the groups that some belong to. Their work is `become_python_command`,
+/// before the command line is parsed.
 void add_python_commands(CLI::App& app);
 
-/// Does not return where the first argument names such a subcommand: all behind it goes to `python -m
+/// Does not return where the first arguments name such a subcommand: they and all behind go to `python -m
 /// slipfront NAME`. The interpreter is $SLIPFRONT_PYTHON; else .venv/bin/python of the source tree that the
 /// program was built in; else python3 of the PATH. In a source tree the package is the tree's own.
 /// @throws UserError where no interpreter can be started

@@ -149,21 +149,7 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
                            results::ResultFolder& folder, const std::optional<input::Case>& config) {
   const auto hooks = cli::hooks(options.quiet);
   if (options.restart) return run::resume(folder, config ? &*config : nullptr, options.session, hooks);
-  try {
-    return run::run_into(folder, *config, options.session, hooks);
-  } catch (const UserError& error) {
-    throw arguments.with_place(error);
-  }
-}
-
-/// Refuses what the machine cannot hold before anything is written.
-void require_fit(const CaseArguments& arguments, const input::Case& config, const std::filesystem::path& dir,
-                 const run::SessionOptions& options) {
-  try {
-    run::require_fit(config, dir, *options.processes);
-  } catch (const UserError& error) {
-    throw arguments.with_place(error);
-  }
+  return arguments.placing_errors([&] { return run::run_into(folder, *config, options.session, hooks); });
 }
 
 void run_case(const CaseArguments& arguments, RunArguments& options) {
@@ -181,17 +167,14 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }
+  const Processes& processes = *options.session.processes;
   if (!options.restart) {
     folder.require_empty(options.overwrite);
-    require_fit(arguments, *config, folder.dir(), options.session);
+    // What the machine cannot hold is refused before anything is written.
+    arguments.placing_errors([&] { run::require_fit(*config, folder.dir(), processes); });
   }
-  if (options.session.processes->size() > 1 && config) {
-    try {
-      run::require_divisible(*config, *options.session.processes);
-    } catch (const UserError& error) {
-      throw arguments.with_place(error);
-    }
-  }
+  if (processes.size() > 1 && config)
+    arguments.placing_errors([&] { run::require_divisible(*config, processes); });
   catch_interrupts();
   try {
     const auto [result, initial] = run_or_go_on(arguments, options, folder, config);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
+#include <memory>
 #include <utility>
 
 #include "base/error.hpp"
@@ -14,14 +15,11 @@
 namespace slipfront::cli {
 namespace {
 
-void validate(const CaseArguments& arguments) {
+void validate(const CaseArguments& arguments, bool is_resolved) {
   const input::Case& config = arguments.read();
-  run::RuptureOutlook rupture;
-  try {
-    rupture = run::rupture_outlook(config, run::check(config));
-  } catch (const UserError& error) {
-    throw arguments.with_place(error);
-  }
+  const auto rupture =
+      arguments.placing_errors([&] { return run::rupture_outlook(config, run::check(config)); });
+  if (is_resolved) return print_output(input::to_toml(config));
   std::string text = fmt::format("{}: valid\n", arguments.file);
   auto notes = arguments.notes();
   const double step_s = run::estimated_size(config).step_s;
@@ -36,7 +34,9 @@ void add_validate(CLI::App& app) {
   CLI::App* command = app.add_subcommand("validate", "Check a case file without running it");
   command->group("Cases");
   const auto arguments = add_case_arguments(*command);
-  command->callback([arguments] { validate(*arguments); });
+  auto is_resolved = std::make_shared<bool>();
+  command->add_flag("--resolved", *is_resolved, "Print the case with the value of every key");
+  command->callback([arguments, is_resolved] { validate(*arguments, *is_resolved); });
 }
 
 }  // namespace slipfront::cli

@@ -125,6 +125,11 @@ struct Case {
   Probes probes;
 };
 
+/// Whether the tractions of the interface before the event are given: no statics, no ramp.
+inline bool is_prestressed(const Case& config) {
+  return config.loading.method == statics::LoadingMethod::prestress;
+}
+
 inline bool has_base_body(const Case& config) {
   return config.base.kind == BaseKind::body;
 }
@@ -151,7 +156,7 @@ inline bool has_equal_elements(const Case& config) {
 /// Whether processes that share a run may each have some columns of the bodies while none has all, so that
 /// these may have more nodes than can be numbered: nothing is strained before the event.
 inline bool can_be_held_in_parts(const Case& config) {
-  return config.loading.method == statics::LoadingMethod::prestress && has_equal_elements(config);
+  return is_prestressed(config) && has_equal_elements(config);
 }
 
 /// The probes of a case with their names.

@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <utility>
 
-#include "base/error.hpp"
 #include "input/entries.hpp"
 
 namespace slipfront::input {
@@ -18,12 +17,6 @@ struct Scale {
   std::string name;
   std::function<double(const Case&)> of;
 };
-
-const Entry& entry_of(const std::string& key) {
-  const auto found = std::ranges::find(common_entries(), key, &Entry::key);
-  SLIPFRONT_ASSERT(found != common_entries().end(), "a default's rule has no key");
-  return *found;
-}
 
 /// The multiple is what the member's own default is of the paper's plate, which itself has that default.
 DefaultRule multiple_of(const Scale& scale, const std::string& key) {
@@ -46,12 +39,9 @@ double c_S_m_per_s(const Case& config) {
 
 /// Prescribed tractions are all the load there is.
 DefaultRule shear_speed_rule() {
-  return {"loading.shear_speed_over_c_L", "`1e-06`; `0` with loading.method = prestress",
-          [](const Case& c) -> Value {
-            return c.loading.method == statics::LoadingMethod::prestress
-                       ? 0.0
-                       : Case{}.loading.shear_speed_over_c_L;
-          }};
+  return {
+      "loading.shear_speed_over_c_L", "`1e-06`; `0` with loading.method = prestress",
+      [](const Case& c) -> Value { return is_prestressed(c) ? 0.0 : Case{}.loading.shear_speed_over_c_L; }};
 }
 
 DefaultRule element_size_rule(const Scale& width) {
@@ -125,8 +115,7 @@ const DefaultRule* default_rule_of(const std::string& key) {
 void set_defaults_by_rule(const Document& document, Case& config) {
   for (const auto& rule : default_rules()) {
     const Entry& entry = entry_of(rule.key);
-    const bool applies = !entry.only_with || entry.only_with->holds(config);
-    if (applies && !document.find(rule.key)) entry.set(config, rule.value(config));
+    if (applies(entry, config) && !document.find(rule.key)) entry.set(config, rule.value(config));
   }
 }
 

@@ -76,6 +76,8 @@ struct Entry {
   std::function<bool(const Case&)> is_set = {};
 };
 
+/// Whether a key does something in a case.
+bool applies(const Entry& entry, const Case& config);
 /// Whether a case has a value of a key that applies to it.
 bool has_value(const Entry& entry, const Case& config);
 
@@ -103,6 +105,11 @@ const LawEntries& law_of(const Case& config);
 
 /// Keys of every case, in the order of the case file; those of the friction laws follow `friction.law`.
 const std::vector<Entry>& common_entries();
+
+/// Of a key; null where none is that.
+const Entry* find_entry(const std::vector<Entry>& entries, const std::string& key);
+/// One of common_entries. @pre it is
+const Entry& entry_of(const std::string& key);
 
 /// All keys that a case can set, those of its friction law among them, in the order of the case file.
 std::vector<Entry> entries_of(const Case& config);

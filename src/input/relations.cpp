@@ -21,12 +21,7 @@ namespace {
 
 using interface::EventKind;
 using mesh::Sides;
-using statics::LoadingMethod;
 using statics::StaticSolver;
-
-bool is_tilted(const Case& config) {
-  return config.loading.method != LoadingMethod::prestress;
-}
 
 void check_friction(const Case& config) {
   const Message problem = interface::inconsistency(config.friction);
@@ -47,9 +42,10 @@ void check_element_size(const Case& config) {
   const double h = plate.element_size_m, columns = plate.width_m / h + 1, rows = plate.height_m / h + 1;
   const bool in_parts = can_be_held_in_parts(config);
   if ((in_parts ? std::max(columns, rows) : columns * rows) > max_nodes)
-    throw UserError("{} is {:.12g} m; that makes more than {:.3g} nodes{}, choose a larger one{}",
-                    element_size, h, max_nodes, in_parts ? " in a row or a column" : "",
-                    is_tilted(config) ? "; under prescribed tractions several MPI ranks can share more" : "")
+    throw UserError(
+        "{} is {:.12g} m; that makes more than {:.3g} nodes{}, choose a larger one{}", element_size, h,
+        max_nodes, in_parts ? " in a row or a column" : "",
+        is_prestressed(config) ? "" : "; under prescribed tractions several MPI ranks can share more")
         .about("plate.width_m", "plate.height_m");
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   if (h > shorter_m)
@@ -61,7 +57,7 @@ void check_element_size(const Case& config) {
 /// What a prescribed state, or the lack of one, asks of the other keys.
 void check_prestress(const Case& config, const Document& document) {
   const Key method("loading.method"), kind("event.kind");
-  if (is_tilted(config)) {
+  if (!is_prestressed(config)) {
     const bool is_driven = config.loading.method == statics::LoadingMethod::ramp ||
                            config.event == interface::EventKind::spontaneous;
     if (config.loading.shear_speed_over_c_L > 0 || !is_driven) return;
@@ -89,7 +85,7 @@ void check_prestress(const Case& config, const Document& document) {
 }
 
 void check_tilt(const Case& config) {
-  if (!is_tilted(config)) return;
+  if (is_prestressed(config)) return;
   const auto& loading = config.loading;
   const auto& plate = config.plate;
   const bool by_force = statics::normal_force_N_per_m(loading, plate.width_m).has_value();
@@ -115,7 +111,7 @@ void check_tilt(const Case& config) {
 }
 
 void check_trigger_zone(const Case& config) {
-  const bool counts = is_tilted(config) || interface::is_at_edge(config.event);
+  const bool counts = !is_prestressed(config) || interface::is_at_edge(config.event);
   if (counts && config.trigger.zone_m > config.plate.width_m)
     throw UserError("{} is {:.12g} m; it must be at most {}, {:.12g} m", Key("event.trigger_zone_m"),
                     config.trigger.zone_m, Key("plate.width_m"), config.plate.width_m);
@@ -133,7 +129,7 @@ void check_solver(const Case& config) {
     throw UserError("{} = iterative does not support a graded base; choose auto or direct, or {} = 0", solver,
                     Key("base.coarsenings"));
   const double height_m = plate.height_m + (has_base ? config.base.plate.height_m : 0);
-  if (is_tilted(config) && height_m > 2 * statics::max_iterative_slenderness * plate.width_m)
+  if (!is_prestressed(config) && height_m > 2 * statics::max_iterative_slenderness * plate.width_m)
     throw UserError(
         "{} = iterative does not converge on a plate so much higher than wide; choose auto or direct", solver)
         .about("plate.height_m", "plate.width_m");

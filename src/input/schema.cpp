@@ -81,12 +81,6 @@ std::optional<std::string> nearest_key(const std::string& key, const std::vector
   return keys[static_cast<std::size_t>(std::ranges::find(plain, *found) - plain.begin())];
 }
 
-const Entry* find_entry(const std::vector<Entry>& entries, const std::string& key) {
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
-  return found == entries.end() ? nullptr : &*found;
-}
-
 /// The friction law, other than `except`, that has a parameter of this key; null where none has.
 const LawEntries* law_with(const std::string& key, const LawEntries* except) {
   for (const LawEntries& law : friction_laws())
@@ -104,7 +98,7 @@ std::vector<std::string> tables_of(const std::vector<Entry>& entries) {
 }
 
 bool contains_word(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+  return std::ranges::find(words, word) != words.end();
 }
 
 std::string_view kind_name(Kind kind) {
@@ -128,7 +122,6 @@ std::string_view kind_name(Kind kind) {
 }
 
 // --- Overrides
-// ---------------------------------------------------------------------------------------------------
 
 std::string place_of(const Override& override) {
   return files::shortened(for_caller("--set {}={}", "{} = {}", override.first, override.second));
@@ -150,32 +143,23 @@ Setting to_setting(const Override& override) {
 
 void apply(const std::vector<Override>& overrides, Document& document) {
   for (const Override& override : overrides) {
-    auto& settings = document.settings;
-    settings.erase(std::remove_if(settings.begin(), settings.end(),
-                                  [&](const Setting& setting) { return setting.key == override.first; }),
-                   settings.end());
-    settings.push_back(to_setting(override));
+    std::erase_if(document.settings, [&](const Setting& setting) { return setting.key == override.first; });
+    document.settings.push_back(to_setting(override));
   }
 }
 
-/// Keys whose values decide which later ones of these, and which other keys, there are.
-constexpr std::array deciding_keys = {"plate.coarsenings",
-                                      "base.kind",
-                                      "base.coarsenings",
-                                      "loading.method",
-                                      "prestress.file",
-                                      "friction.file",
-                                      "friction.random_key",
-                                      "event.kind",
-                                      "event.trigger_form",
-                                      "nucleation.form",
-                                      "loading.normal_force_N_per_m",
-                                      "loading.mean_pressure_Pa",
-                                      "loading.shear_force_N_per_m",
-                                      "loading.shear_over_critical"};
-
-bool applies(const Entry& entry, const Case& config) {
-  return !entry.only_with || entry.only_with->holds(config);
+/// Keys that decide by their values which others there are, in the order of the case file.
+const std::vector<const Entry*>& deciding_entries() {
+  static const std::vector<const Entry*> deciding = [] {
+    std::vector<const Entry*> all;
+    for (const Entry& entry : common_entries())
+      if (std::ranges::any_of(common_entries(), [&](const Entry& other) {
+            return other.only_with && contains_word(other.only_with->setting.keys, entry.key);
+          }))
+        all.push_back(&entry);
+    return all;
+  }();
+  return deciding;
 }
 
 /// Removes keys of the file. @return a note of it, empty where there are none
@@ -196,10 +180,9 @@ std::string drop(const std::function<bool(const Setting&)>& is_dropped, const st
 std::string drop_keys_that_overrides_exclude(const Case& config, Document& document) {
   std::vector<std::string> why;
   const auto overridden = [&](const Entry& entry) {
-    return std::ranges::any_of(deciding_keys, [&](const char* key) {
+    return std::ranges::any_of(entry.only_with->setting.keys, [&](const std::string& key) {
       const Setting* setting = document.find(key);
-      if (!setting || !setting->is_override() || !contains_word(entry.only_with->setting.keys, key))
-        return false;
+      if (!setting || !setting->is_override()) return false;
       if (!contains_word(why, setting->place)) why.push_back(setting->place);
       return true;
     });
@@ -225,7 +208,6 @@ std::string drop_parameters_of_other_laws(const Case& config, Document& document
 }
 
 // --- Single keys
-// -------------------------------------------------------------------------------------------------
 
 [[noreturn]] void throw_unknown_table(const TableHeader& table, const std::vector<std::string>& tables) {
   const auto guess = nearest(table.key, tables);
@@ -392,7 +374,6 @@ void check_tables(const Document& document, const std::vector<Entry>& entries) {
 }
 
 // --- Places
-// ----------------------------------------------------------------------------------------------------
 
 /// Place of the first of these keys that is set, an override before the file; `name` where none is.
 std::string place_of(const Document& document, const std::vector<std::string>& keys,
@@ -412,7 +393,6 @@ UserError with_place(const UserError& error, const Document& document, const std
 }
 
 // --- Reference
-// ---------------------------------------------------------------------------------------------------
 
 std::string reference_row(const Entry& entry, const Case& defaults) {
   std::string type(kind_name(entry.kind));
@@ -492,16 +472,13 @@ Case case_of(Document document, const std::string& name, std::vector<std::string
 
   Case config;
   // The law first: it decides which keys there are.
-  if (const Setting* law = document.find("friction.law"))
-    assign(*find_entry(common_entries(), "friction.law"), *law, config);
+  if (const Setting* law = document.find("friction.law")) assign(entry_of("friction.law"), *law, config);
   notes.push_back(drop_parameters_of_other_laws(config, document));
   const auto decide = [&](auto&& counts) {
-    for (const char* key : deciding_keys) {
-      const Entry& entry = *find_entry(common_entries(), key);
-      if (const Setting* setting = document.find(key);
-          setting && counts(entry, *setting) && applies(entry, config))
-        assign(entry, *setting, config);
-    }
+    for (const Entry* entry : deciding_entries())
+      if (const Setting* setting = document.find(entry->key);
+          setting && counts(*entry, *setting) && applies(*entry, config))
+        assign(*entry, *setting, config);
   };
   decide([](const Entry& entry, const Setting&) { return !entry.is_set; });
   // Keys that decide by being set exclude others of their kind: overrides win.
@@ -615,25 +592,24 @@ std::string to_toml(const Case& config) {
 }
 
 std::string schema_reference() {
-  std::string text =
-      "# Keys of the case file\n\n"
-      "A key that is not set keeps its default. On the command line, `--set table.key=value` wins over the "
-      "file.\n"
-      "All quantities are in SI units, named by the ending of the key. A file sets at least one key. Numbers "
-      "other "
-      "than 0\nmust be within these magnitudes, beyond which products of them would leave the range of "
-      "doubles:\n\n"
-      "| unit | at least | at most |\n|---|---|---|\n";
+  std::string text = R"(# Keys of the case file
+
+A key that is not set keeps its default. On the command line, `--set table.key=value` wins over the file.
+All quantities are in SI units, named by the ending of the key. A file sets at least one key. Numbers other than 0
+must be within these magnitudes, beyond which products of them would leave the range of doubles:
+
+| unit | at least | at most |
+|---|---|---|
+)";
   for (const auto& [unit, least, most] : all_magnitudes())
     text += fmt::format("| {} | {:g} | {:g} |\n", unit.empty() ? "others" : unit, least, most);
-  text +=
-      "\nDefaults that are lengths or times are multiples of `plate.width_m`, of `plate.height_m` or of the "
-      "time width_m / c_S\nin which a shear wave crosses the plate (of two bodies with the slower one's "
-      "c_S). "
-      "The factors give the paper's plate,\nwidth 0.2 m and c_S 889 m/s, the values chosen for it: an end at "
-      "1.1 ms, a quiet time of 30 us, l* = 0.67 mm and so on.\n`case.resolved.toml` beside the results has "
-      "the "
-      "values.\n\n";
+  text += R"(
+Defaults that are lengths or times are multiples of `plate.width_m`, of `plate.height_m` or of the time width_m / c_S
+in which a shear wave crosses the plate (of two bodies with the slower one's c_S). The factors give the paper's plate,
+width 0.2 m and c_S 889 m/s, the values chosen for it: an end at 1.1 ms, a quiet time of 30 us, l* = 0.67 mm and so on.
+`case.resolved.toml` beside the results has the values.
+
+)";
   return text + reference_of([](const Entry&) { return true; });
 }
 
@@ -648,10 +624,6 @@ std::string schema_reference_of(const std::string& part) {
   const auto guess = nearest_key(part, keys);
   throw UserError("slipfront: keys {}: is no table and no key; {}", files::shortened(part),
                   guess ? fmt::format("did you mean {}?", *guess) : "slipfront keys lists all");
-}
-
-std::string CaseFile::place_of_key(const std::string& key) const {
-  return place_of(document_, {key}, name_);
 }
 
 UserError CaseFile::with_place(const UserError& error) const {

@@ -41,12 +41,9 @@ class CaseFile {
   /// Keys of the file that overrides leave without effect, a line for each reason.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// For an error found after reading (geometry, step): "--set key=value" where an override sets the dotted
-  /// key, else "FILE:LINE" where the file does, else FILE alone.
-  std::string place_of_key(const std::string& key) const;
-
-  /// The same error with its place: "FILE:LINE: message". Of the error's keys that counts which an override
-  /// sets, else the first that the file sets.
+  /// An error found after reading (geometry, step) with its place, "FILE:LINE: message", "--set key=value:
+  /// ..." or "FILE: ...". Of the error's keys that counts which an override sets, else the first that the
+  /// file sets.
   UserError with_place(const UserError& error) const;
 
  private:

@@ -85,10 +85,6 @@ bool is_plain(const input::Case& config) {
   return config.time.stepper == motion::StepperKind::plain;
 }
 
-bool is_prestressed(const input::Case& config) {
-  return config.loading.method == statics::LoadingMethod::prestress;
-}
-
 bool has_snapshots(const input::Case& config) {
   return !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
 }

@@ -41,8 +41,6 @@ statics::StaticSolver wanted_solver(const input::Case& config);
 /// bodies' sides free; a base takes its share of the compression.
 double nominal_pressure_Pa(const input::Case& config);
 
-/// Whether the tractions of the interface are given: no statics, no ramp.
-bool is_prestressed(const input::Case& config);
 /// Whether steps are computed as the scheme is written.
 bool is_plain(const input::Case& config);
 

@@ -21,8 +21,8 @@ std::string table_note(const char* key, const std::vector<double>& x_m, double w
   const auto n_beyond = std::ranges::count_if(x_m, is_beyond);
   if (n_beyond == 0) return {};
   return fmt::format(
-      "the table of {} reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of "
-      "its {} rows lie beyond it; are its positions in m?",
+      "the table of {} reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of its {} rows "
+      "lie beyond it; are its positions in m?",
       key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
 }
 
@@ -55,10 +55,10 @@ void add_odd_units(const NamedMaterial& body, double width_m, Notes& notes) {
              notes);
   const double damping_length_m = m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
   if (damping_length_m > 0.1 * width_m)
-    notes.push_back(fmt::format(
-        "{}.stiffness_damping_s = {:g}: damps all waves shorter than {:.3g} m, the plate's width is {:g} m; "
-        "is it beta_R in s, no loss factor?",
-        table, m.stiffness_damping_s, damping_length_m, width_m));
+    notes.push_back(
+        fmt::format("{}.stiffness_damping_s = {:g}: damps all waves shorter than {:.3g} m, the plate's width "
+                    "is {:g} m; is it beta_R in s, no loss factor?",
+                    table, m.stiffness_damping_s, damping_length_m, width_m));
 }
 
 /// Numbers of the interface that may be in another unit than the key's.
@@ -108,9 +108,8 @@ void add_lengths(const input::Case& config, Notes& notes) {
   const auto add_short = [&](const char* key, double length_m) {
     if (length_m < (1 - 1e-9) * min_m)
       notes.push_back(
-          fmt::format("{} = {:.4g} m is less than two elements, {:.4g} m: the mesh does not "
-                      "resolve it",
-                      key, length_m, min_m));
+          fmt::format("{} = {:.4g} m is less than two elements, {:.4g} m: the mesh does not resolve it", key,
+                      length_m, min_m));
   };
   if (interface::is_at_edge(config.event)) add_short("event.trigger_zone_m", config.trigger.zone_m);
   if (config.event == interface::EventKind::nucleation)
@@ -123,20 +122,19 @@ void add_lengths(const input::Case& config, Notes& notes) {
         config.nucleation.half_length_m, config.plate.width_m));
   const double zone_m = interface::is_at_edge(config.event) ? config.trigger.zone_m : 0;
   if (zone_m + config.fronts.trigger_margin_m > 0.5 * config.plate.width_m)
-    notes.push_back(
-        fmt::format("fronts.trigger_margin_m = {:.4g} m leaves less than half of the interface "
-                    "to t_d and p_d",
-                    config.fronts.trigger_margin_m));
+    notes.push_back(fmt::format(
+        "fronts.trigger_margin_m = {:.4g} m leaves less than half of the interface to t_d and p_d",
+        config.fronts.trigger_margin_m));
   // Beside the interface displacements bend within an element.
   const auto probes = input::probe_places(config);
   const auto is_beside = [&](const record::ProbePlace& place) {
     return place.y_m != 0 && std::abs(place.y_m) < (1 - 1e-9) * min_m;
   };
   if (const auto n = std::ranges::count_if(probes, is_beside); n > 0)
-    notes.push_back(fmt::format(
-        "probes: {} of {} are less than two elements, {:.4g} m, from the interface: strains and stresses "
-        "there are those of the mesh; choose a smaller plate.element_size_m",
-        n, probes.size(), min_m));
+    notes.push_back(
+        fmt::format("probes: {} of {} are less than two elements, {:.4g} m, from the interface: strains and "
+                    "stresses there are those of the mesh; choose a smaller plate.element_size_m",
+                    n, probes.size(), min_m));
 }
 
 /// Rows of a table that end where a node is, but for rounding: the node has the later row's values.
@@ -150,8 +148,7 @@ void add_rows_beside_nodes(const input::Case& config, Notes& notes) {
     if (off_m > 1e-9 * h_m && off_m <= input::position_tolerance * config.plate.width_m)
       notes.push_back(
           fmt::format("friction.file: the row at x = {} m counts for the node at {:g} m, {:.2g} m before it, "
-                      "as well; put "
-                      "rows of a stepwise table between nodes",
+                      "as well; put rows of a stepwise table between nodes",
                       x_m, node_x_m, off_m));
   }
 }
@@ -171,8 +168,7 @@ void add_damping(const input::Case& config, Notes& notes) {
   if (least_s < (1 - 1e-9) * needed_s)
     notes.push_back(fmt::format(
         "friction follows the pressure at once between bodies that differ, with damping of {:g} s: waves of "
-        "3 "
-        "to 4 elements can grow on the mesh alone, and arrivals be wrong; {} = {:.2g} damps them (or use "
+        "3 to 4 elements can grow on the mesh alone, and arrivals be wrong; {} = {:.2g} damps them (or use "
         "[friction] regularisation)",
         least_s, bodies.below ? "stiffness_damping_s of both bodies" : "material.stiffness_damping_s",
         needed_s));
@@ -190,8 +186,7 @@ void add_free_sides(const input::Case& config, Notes& notes) {
     notes.emplace_back(
         "sides are free, but t is prescribed up to the corners: free sides bear no shear, so that this is no "
         "state of equilibrium, and pressures at the corners are not those of a block; use absorbing sides, "
-        "or "
-        "loading.method = direct");
+        "or loading.method = direct");
 }
 
 /// Times that do not suit the plate.
@@ -210,11 +205,11 @@ void add_times(const input::Case& config, double step_s, Notes& notes) {
   constexpr double most_steps = 1e8;
   if (config.time.end_s > 1e3 * width_m / solid::shear_speed_m_per_s(config.material) ||
       config.time.end_s > most_steps * step_s)
-    notes.push_back(fmt::format(
-        "time.end_s = {:g} s is {:.2g} steps, and {:.2g} times what a shear wave takes to cross the "
-        "plate; is it in s?",
-        config.time.end_s, config.time.end_s / step_s,
-        config.time.end_s * solid::shear_speed_m_per_s(config.material) / width_m));
+    notes.push_back(
+        fmt::format("time.end_s = {:g} s is {:.2g} steps, and {:.2g} times what a shear wave takes to cross "
+                    "the plate; is it in s?",
+                    config.time.end_s, config.time.end_s / step_s,
+                    config.time.end_s * solid::shear_speed_m_per_s(config.material) / width_m));
   const bool ramps = interface::is_at_edge(config.event) || config.event == interface::EventKind::nucleation;
   if (ramps && config.trigger.ramp_s > config.time.end_s)
     notes.push_back(fmt::format("event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",

@@ -143,11 +143,10 @@ void add_cautions(const input::Case& config, RuptureOutlook& o) {
     o.cautions.push_back(std::move(caution));
   const double length_m = damping_length_m(bodies_of(config)), zone_m = *o.of_nodes.process_zone_m;
   if (length_m > harmless_damping * zone_m)
-    o.cautions.push_back(
-        fmt::format("damping: beta_R c_L = {:.3g} m is {:.2g} % of the process zone; beyond 2 % it changes "
-                    "speeds and whether "
-                    "and where fronts pass c_S; choose a smaller stiffness_damping_s, or compare with one",
-                    length_m, 100 * length_m / zone_m));
+    o.cautions.push_back(fmt::format(
+        "damping: beta_R c_L = {:.3g} m is {:.2g} % of the process zone; beyond 2 % it changes speeds and "
+        "whether and where fronts pass c_S; choose a smaller stiffness_damping_s, or compare with one",
+        length_m, 100 * length_m / zone_m));
 }
 
 RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed) {

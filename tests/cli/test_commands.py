@@ -8,6 +8,7 @@ from common import ROOT, refusal, require_done, sets
 
 COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "new", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "sweep"]
+PYTHON_STUDIES = ["study convergence", "study interface-step"]
 CASES = sorted((ROOT / "papers/kammer2012").glob("*.toml"))
 
 

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from common import ROOT, finished, one_line, refusal, require_done
-from test_commands import PYTHON_COMMANDS
+from test_commands import PYTHON_COMMANDS, PYTHON_STUDIES
 
 ECHO = '#!/bin/sh\nshift 2\nprintf "%s|" "$@"\nprintf "%s" "$PYTHONPATH"\n'
 BARE = f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n'  # without installed packages
@@ -44,13 +44,13 @@ def in_tree(program):
     return program.path.parents[1].name == "build" and (program.path.parents[2] / "python/slipfront").is_dir()
 
 
-@pytest.mark.parametrize("command", PYTHON_COMMANDS)
+@pytest.mark.parametrize("command", PYTHON_COMMANDS + PYTHON_STUDIES)
 def test_arguments_are_passed_on_as_they_are(program, interpreter, monkeypatch, command):
     interpreter(ECHO)
     monkeypatch.setenv("PYTHONPATH", "/mine")
     arguments = ["--help", "a b", "-o", "", "--", "--set", "*", "ä"]
-    *passed, path = require_done(program(command, *arguments)).stdout.split("|")
-    assert passed == [command, *arguments]
+    *passed, path = require_done(program(*command.split(), *arguments)).stdout.split("|")
+    assert passed == [*command.split(), *arguments]
     first = f"{program.path.parents[2] / 'python'}:" if in_tree(program) else ""
     assert path == first + "/mine"
 

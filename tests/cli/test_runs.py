@@ -34,8 +34,6 @@ from common import (
     wait_until,
     wait_until_or_over,
 )
-from slipfront.figures import interface_step
-from slipfront.figures.convergence import read_study
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
 
 SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
@@ -359,37 +357,6 @@ def test_reproduce_can_be_interrupted(program, tmp_path):
     assert not (tmp_path / "out/scorecard.json").exists()
 
 
-@pytest.mark.parametrize("event, n_quiet", [("left", 0), ("none", 9)])
-def test_convergence_study_and_its_figure_agree(program, coarse, tmp_path, event, n_quiet):
-    """The medians that the figure draws from the table are those that the program tells."""
-    options = ("--set", f"event.kind={event}", "--threads", "2", "--element-sizes", "5e-3,2.5e-3,2e-3")
-    printed = require_done(program("study", "convergence", coarse, "-o", "out", *options)).stdout
-    assert f"\n9 runs, {n_quiet} of which ended before time.end_s since nothing moved\n" in printed
-    assert ("note: no front of the case's own run" in printed) == (event == "none")
-    written = json.loads((tmp_path / "out/convergence.json").read_text())
-    assert (written["n_runs"], written["n_quiet"]) == (9, n_quiet)
-    if event == "none":
-        return
-    study = read_study(tmp_path / "out")
-    assert [s.parameter for s in study.sequences] == [s["parameter"] for s in written["sequences"]]
-    compared = 0
-    for entry, sequence in zip(written["sequences"], study.sequences, strict=True):
-        for direction in study.directions():
-            error = entry[f"direction_{direction:+d}"]["median_relative_error"]
-            if error is not None:
-                # Ten digits in the table.
-                assert sequence.median_error(direction)[sequence.own] == pytest.approx(error, rel=1e-6)
-                compared += 1
-    assert compared >= 3
-
-
-def test_sizes_of_a_study_that_do_not_fit_are_the_options(program, coarse):
-    sizes = ("--element-sizes", "5e-3,7e-3,2.5e-3")
-    printed = refusal(program("study", "convergence", coarse, "-o", "out", *sizes))
-    size = "element size 0.007 m of the study, see --element-sizes: plate.element_size_m = 0.007 does not"
-    assert size in printed
-
-
 PRESTRESSED = """
 [plate]
 width_m = 0.1
@@ -458,15 +425,3 @@ def test_open_choices_are_judged_and_handed_to_the_scorecard(program, tmp_path):
     (tmp_path / "choices/open_choices.csv").write_text("changed")
     refused = program("reproduce", "--quick", "-o", "again", "--open-choices", "choices")
     assert "choices/open_choices.csv" in refusal(refused)
-
-
-def test_interface_step_study_writes_a_case_that_runs(program, coarse, tmp_path):
-    options = ("--rows", "2", "--substeps", "2,4", "--tolerance", "0.5")
-    result = require_done(program("study", "interface-step", coarse, "-o", "out", *options))
-    assert "cheapest within 50 %" in result.stdout
-    picture = tmp_path / "picture.png"
-    assert interface_step.main(picture, [tmp_path / "out"]) == 0
-    assert picture.is_file()
-    require_done(program("run", "out/chosen.toml", "-o", "again", "-q"))
-    chosen = json.loads((tmp_path / "out/interface_step.json").read_text())["chosen"]
-    assert chosen["p90_error"] <= 0.5

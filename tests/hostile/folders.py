@@ -54,8 +54,7 @@ def while_one_runs(setting):
             ("run", "--restart", folder),
             ("reproduce", "--quick", "--overwrite", "-o", folder),
             ("verify", "--quick", "symmetry", "-o", folder),
-            ("study", "convergence", case, "--overwrite", "-o", folder),
-            ("study", "interface-step", case, "--overwrite", "-o", folder),
+            ("study", "base", "--quick", "--overwrite", "-o", folder),
         ):
             line = one_line(bench.run(*command), 2)
             require(f"in use by process {process.pid}" in line, line)

@@ -7,7 +7,6 @@ import time
 
 from common import finished, require_done
 
-from .cases import COARSE
 from .trials import Trial, alone, remove, require, require_same
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
@@ -19,14 +18,7 @@ class Setting:
         self.bench = bench
         self.command = {
             "reproduce": ["reproduce", "--quick"],
-            "study": [
-                "study",
-                "convergence",
-                bench.case(COARSE),
-                "-q",
-                "--element-sizes",
-                "5e-3,2.5e-3,2e-3",
-            ],
+            "study": ["study", "base", "--quick", "-q"],
             "verify": ["verify", "--quick", "rayleigh_wave", "symmetry", "growing_modes", "column", "impact"],
         }[kind]
         folder = bench.folder()

@@ -516,13 +516,11 @@ TEST(CaseFile, PlacesOfLaterErrors) {
   const auto file = folder / "c.toml";
   test::write_file(file, "title = \"x\"\n[plate]\n\nelement_size_m = 1e-3\n");
   const CaseFile plain(file);
-  EXPECT_EQ(plain.place_of_key("plate.element_size_m"), file.string() + ":4");
-  EXPECT_EQ(plain.place_of_key("plate.width_m"), file.string());
+  const Key element_size("plate.element_size_m"), width("plate.width_m");
+  EXPECT_EQ(plain.with_place(UserError("{} is odd", width)).what(), file.string() + ": plate.width_m is odd");
   EXPECT_EQ(plain.with_place(UserError("no key in here")).what(), file.string() + ": no key in here");
   const CaseFile overridden(file, {{"plate.width_m", "3"}});
   std::filesystem::remove(file);  // what has been read is not read again
-  EXPECT_EQ(overridden.place_of_key("plate.width_m"), "--set plate.width_m=3");
-  const Key element_size("plate.element_size_m"), width("plate.width_m");
   // The text is not searched for keys.
   EXPECT_EQ(overridden.with_place(UserError("{} does not divide plate.width_m", element_size)).what(),
             file.string() + ":4: plate.element_size_m does not divide plate.width_m");

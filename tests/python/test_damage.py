@@ -132,7 +132,7 @@ def test_a_damaged_unfinished_run_is_drawn_or_refused(output, status):
 STUDIES = {
     "study": (write_study, lambda folder, picture: main([str(folder)])),
     "verify": (write_verification, lambda folder, picture: verification.main(folder, picture.parent)),
-    "step": (write_interface_step, lambda folder, picture: interface_step.main(picture, [folder])),
+    "step": (write_interface_step, lambda folder, picture: interface_step.main([str(picture), str(folder)])),
     "choices": (write_open_choices, lambda folder, picture: open_choices.main([str(picture), str(folder)])),
 }
 

@@ -16,7 +16,7 @@ import slipfront.command
 from common import WITH_PACKAGE, call
 from common import one_line as line_of
 from refusals import one_error, one_line
-from slipfront.figures import interface_step, open_choices, verification
+from slipfront.figures import interface_step, verification
 from slipfront.figures.__main__ import main
 from slipfront.files import DataError, read_json, read_table, read_toml
 from slipfront.read import read_experiment, read_fronts, read_history
@@ -171,7 +171,7 @@ def test_a_front_that_turns_back_is_refused(run):
 @pytest.mark.parametrize("title", [r"costs $5 $\frac$", "two\nlines 日本 \u202e"])
 def test_any_title_is_drawn(tmp_path, title):
     step = write_interface_step(tmp_path / "step", title)
-    assert interface_step.main(tmp_path / "made" / "picture.png", [step]) == 0
+    assert interface_step.main([str(tmp_path / "made/picture.png"), str(step)]) == 0
     study = write_study(tmp_path / "study")
     file = study / "convergence.json"
     file.write_text(file.read_text().replace("made up", title.encode("unicode_escape").decode()))
@@ -206,9 +206,7 @@ PICTURES = {
 
 def draws(module, picture, folder) -> int:
     """The exit code of a module that draws a study into a picture."""
-    if module.endswith("interface_step"):
-        return interface_step.main(picture, [folder])
-    return open_choices.main([str(picture), str(folder)])
+    return sys.modules[module].main([str(picture), str(folder)])
 
 
 @pytest.mark.parametrize("module", PICTURES)

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from slipfront.figures.drawing import Drawing, plain
+from slipfront.figures.style import DIRECTION_WORDS as WAYS
 from slipfront.figures.style import PAGE_MM, V_LABEL, Look
 from slipfront.files import DataError, is_number, number, read_json_table, read_table
 from slipfront.folder import result_file
@@ -33,7 +34,6 @@ NAMES = {
     "time.step_factor": "step factor",
     "material.stiffness_damping_s": "damping",
 }
-WAYS = {-1: "to $-x$", 1: "to $+x$"}
 MARKERS: dict[int, Look] = {-1: {"marker": "o"}, 1: {"marker": "o", "markerfacecolor": "white"}}
 HIGHEST_PERCENTILE = 98  # the speed diverges where fronts meet: the axis ends at this share of the points
 

@@ -6,17 +6,13 @@ DIR: output folder of `slipfront study interface-step`"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-from slipfront import command
-from slipfront.figures.drawing import Drawing, guarded, plain
-from slipfront.figures.picture import write_picture
-from slipfront.figures.style import COLUMN_MM, RC, V_NAME, new_figure
+from slipfront.figures.drawing import Drawing, plain
+from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.figures.style import COLUMN_MM, V_NAME, new_figure
 from slipfront.files import DataError, number, read_json_table, read_table
 from slipfront.folder import result_file
 
@@ -82,27 +78,19 @@ def draw(folders: list[Path]) -> Drawing:
 
 
 def write(picture: Path, folders: list[Path]) -> list[str]:
-    """Writes the picture; returns what to print."""
-    with matplotlib.rc_context(RC):
-        return write_picture(picture, lambda: guarded(folders[0], lambda: draw(folders)))
+    return write_results(picture, folders[0], lambda _: draw(folders))
 
 
-def main(picture: Path, folders: list[Path]) -> int:
-    return command.run("slipfront.figures", lambda: write(picture, folders))
-
-
-def parsed() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="python -m slipfront.figures.interface_step",
-        description="Draws the error of the front speeds against the cost of the step at the interface.",
+def main(arguments: list[str] | None = None) -> int:
+    return command_to_draw(
+        "slipfront.figures.interface_step",
+        "Draws the error of the front speeds against the cost of the step at the interface.",
+        "`slipfront study interface-step`",
+        write,
+        arguments,
+        several=True,
     )
-    parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write: .png, .pdf or .svg")
-    parser.add_argument(
-        "dirs", metavar="DIR", type=Path, nargs="+", help="output folders of `slipfront study interface-step`"
-    )
-    return parser.parse_args()
 
 
 if __name__ == "__main__":
-    options = parsed()
-    sys.exit(main(options.picture, options.dirs))
+    sys.exit(main())

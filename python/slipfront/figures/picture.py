@@ -60,13 +60,15 @@ def command_to_draw(
     module: str,
     purpose: str,
     results: str,
-    write: Callable[[Path, Path], list[str]],
+    write: Callable[[Path, Any], list[str]],
     arguments: list[str] | None,
     kinds: str = ".png, .pdf or .svg",
+    several: bool = False,
 ) -> int:
-    """Exit code of a module that writes the picture of one folder of results."""
+    """Exit code of a module that writes the picture of a folder of results, or of a list of several."""
     parser = argparse.ArgumentParser(prog=f"python -m {module}", description=purpose)
     parser.add_argument("picture", metavar="PICTURE", type=Path, help=f"the file to write: {kinds}")
-    parser.add_argument("folder", metavar="DIR", type=Path, help=f"output folder of {results}")
+    nargs = "+" if several else None
+    parser.add_argument("folder", metavar="DIR", type=Path, nargs=nargs, help=f"output folder of {results}")
     options = parser.parse_args(arguments)
     return command.run("slipfront.figures", lambda: write(options.picture, options.folder))

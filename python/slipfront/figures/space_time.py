@@ -20,7 +20,6 @@ from slipfront.read import Run
 
 RATE_RANGE_M_PER_S = (0.1, 30.0)
 OPEN_COLOUR = "0.8"
-FRONT_WORDS = {way: f"front {words}" for way, words in style.DIRECTION_WORDS.items()}
 WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
 
 

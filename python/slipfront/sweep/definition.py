@@ -55,13 +55,14 @@ class Sweep:
 
     def points(self) -> list[Point]:
         values: dict[str, Any] = {}
+        is_sample, is_zip = self.combine == "sample", self.combine == "zip"
         for key, spec in self.vary.items():
             with self.at(f"vary.{key}"):
-                values[key] = range_of(key, str(spec)) if self.combine == "sample" else values_of(key, spec)
-        with self.at("sample" if self.combine == "sample" else "vary"):
-            if self.combine == "sample":
+                values[key] = range_of(key, str(spec)) if is_sample else values_of(key, spec, is_zip)
+        with self.at("sample" if is_sample else "vary"):
+            if is_sample:
                 return sample(values, self.count, self.seed)
-            return zipped(values) if self.combine == "zip" else grid(values)
+            return zipped(values) if is_zip else grid(values)
 
     def require_sound(self) -> None:
         """Refuses what contradicts itself; keys and their values are the program's to judge."""

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Points to workers and their outcomes back: Dask's scheduler, on this machine or any that it is told of."""
+"""Points to runs at a time on this machine, or to the workers of Dask, and their outcomes back."""
 
 from __future__ import annotations
 
 import logging
 import os
 import signal
-import sys
 import threading
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Generator, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from slipfront.files import DataError, one_line
+from slipfront.files import DataError
 from slipfront.sweep.work import FAILED, Outcome, Task, run_point
 
 ANSWER_S = 30  # of a scheduler elsewhere
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+Outcomes = Generator[Outcome, None, None]
 
 
 class Stop:
@@ -47,56 +48,27 @@ class Stop:
             self.file.unlink(missing_ok=True)
 
 
-def ignore_interrupts() -> None:
-    """In a worker of this machine: a terminal sends Ctrl-C to it, too."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def advice() -> str:
-    """What to do where a local worker ends as it begins, by importing the script that started it."""
-    script = sys.modules["__main__"]
-    if getattr(script, "__file__", None) and script.__spec__ is None:
-        return "a script calls a sweep under `if __name__ == '__main__':`"
-    return "one has ended at its start: begin again, perhaps with fewer --workers"
-
-
 @contextmanager
-def client_of(scheduler: str | None, workers: int) -> Iterator[Any]:
-    """A Dask client of a scheduler elsewhere, or of as many local processes as there are workers."""
+def client_of(scheduler: str) -> Iterator[Any]:
+    """A Dask client of a scheduler elsewhere."""
     import dask
-    from distributed import Client, LocalCluster
+    from distributed import Client
 
-    dask.config.set({"distributed.worker.daemon": True, "distributed.admin.log-format": "%(message)s"})
-    with ExitStack() as stack:
-        try:
-            if scheduler is None:
-                cluster = LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    processes=True,
-                    dashboard_address="127.0.0.1:0",
-                    memory_limit=0,  # the runs' own processes have the memory
-                    silence_logs=50,
-                )
-                client = stack.enter_context(Client(stack.enter_context(cluster)))
-                client.run(ignore_interrupts)
-            else:
-                client = stack.enter_context(Client(scheduler, timeout=ANSWER_S))
-                # The message is ours.
-                logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
-        except (OSError, TimeoutError, ValueError) as error:
-            where = scheduler or "local workers"
-            raise DataError(f"{where}: no Dask scheduler answers: {error}") from None
-        except RuntimeError as error:
-            raise DataError(f"local workers do not start ({one_line(str(error))}); {advice()}") from None
+    dask.config.set({"distributed.admin.log-format": "%(message)s"})
+    try:
+        client = Client(scheduler, timeout=ANSWER_S)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise DataError(f"{scheduler}: no Dask scheduler answers: {error}") from None
+    with client:
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # the message is ours
         yield client
 
 
-def outcomes(tasks: list[Task], scheduler: str | None, workers: int) -> Iterator[Outcome]:
+def by_scheduler(tasks: list[Task], scheduler: str) -> Outcomes:
     """Of each task, in the order in which they end. Dask tries a task again whose worker has died."""
     from distributed import as_completed
 
-    with client_of(scheduler, workers) as client:
+    with client_of(scheduler) as client:
         futures = client.map(run_point, tasks, pure=False)
         for future in as_completed(futures):
             error = None if future.cancelled() else future.exception()
@@ -107,9 +79,16 @@ def outcomes(tasks: list[Task], scheduler: str | None, workers: int) -> Iterator
                 yield Outcome(tasks[futures.index(future)].point, FAILED, told)
 
 
-def one_by_one(tasks: list[Task]) -> Iterator[Outcome]:
-    """In this process, without Dask: a share of a job array."""
-    yield from map(run_point, tasks)
+def side_by_side(tasks: list[Task], workers: int) -> Outcomes:
+    """Of each task, in the order in which they end; a thread waits for each run. Where nobody asks for more
+    the runs are stopped."""
+    with ThreadPoolExecutor(workers) as pool:
+        try:
+            for future in as_completed([pool.submit(run_point, task) for task in tasks]):
+                yield future.result()
+        except BaseException:
+            tasks[0].stop.touch()
+            raise
 
 
 def default_workers() -> int:

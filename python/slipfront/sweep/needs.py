@@ -20,7 +20,6 @@ from slipfront.sweep.values import text_of
 
 #: Keys on which size, memory and number of steps do not depend: one point's cost stands for all.
 CHEAP = re.compile(r"(friction|event|fronts|contact)\..*|title|loading\.tilt_\w+_m")
-WORKER_BYTES = 0.15 * GIGA  # of a Dask worker beside its run
 TABLE_BYTES = 2e6  # of all tables of a run
 
 
@@ -88,7 +87,7 @@ def needs_of(sweep: Sweep, program: Path, points: list[Point], workers: int) -> 
     return Needs(
         n_points=len(points),
         n_at_once=n,
-        memory_bytes=n * (max((cost.memory_bytes for cost in each), default=0) + WORKER_BYTES),
+        memory_bytes=n * max((cost.memory_bytes for cost in each), default=0),
         disk_bytes=sum(disk if sweep.keep == "all" else disk[:n]) + TABLE_BYTES * len(points),
         time_s=sum(cost.time_s for cost in each),
     )

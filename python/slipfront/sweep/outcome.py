@@ -263,12 +263,11 @@ def waves_over_c_L(file: Path) -> dict[str, float]:
     return {f"{wave}_over_c_L": speed / speeds["c_L"] for wave, speed in speeds.items()}
 
 
-def read_outcome(place: Path) -> dict[str, Cell]:
-    """By the names of QUANTITIES."""
+def read_run(place: Path) -> Run:
     file = place / "case.resolved.toml"
     case, static = read_toml(result_file(file)), read_static(place / "static.csv")
     contact_m = contact_of(static, place / "static.csv")
-    run = Run(
+    return Run(
         info=read_json_table(result_file(place / "run.json")),
         file=place / "run.json",
         all_fronts=read_fronts(place / "fronts.csv"),
@@ -278,4 +277,8 @@ def read_outcome(place: Path) -> dict[str, Cell]:
         driven_m=driven_zones(case, file, contact_m),
         heard_m=heard_zones(case, file, static),
     )
-    return measured(run)
+
+
+def read_outcome(place: Path) -> dict[str, Cell]:
+    """By the names of QUANTITIES."""
+    return measured(read_run(place))

@@ -9,13 +9,14 @@ from pathlib import Path
 
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
-from slipfront.sweep.needs import WORKER_BYTES, needs_of, require_disk, require_valid
-from slipfront.sweep.program import VARIABLE, find_program
+from slipfront.sweep.needs import needs_of, require_disk, require_valid
+from slipfront.sweep.program import GIGA, VARIABLE, find_program
 
 MOST_JOBS = 100
 SPARE = 3  # times the expected time, since machines differ
 LEAST_MINUTES = 10
 MEGA = 1e6
+WORKER_BYTES = 0.15 * GIGA  # of the sweep itself in a job
 
 TEXT = """\
 #!/bin/bash

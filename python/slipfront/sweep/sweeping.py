@@ -6,6 +6,7 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -93,13 +94,13 @@ def run_missing(sweep: Sweep, folder: Path, tasks: list[Task], how: How) -> tupl
     if not tasks:
         return [], False
     stop = engine.Stop(tasks[0].stop)
-    if how.share is not None:
-        found = engine.one_by_one(tasks)
+    if how.scheduler is not None:
+        found = engine.by_scheduler(tasks, how.scheduler)
     else:
-        found = engine.outcomes(tasks, how.scheduler, min(how.workers, len(tasks)))
+        found = engine.side_by_side(tasks, min(how.workers, len(tasks)))
     done = []
     hidden = True if how.quiet or sys.stderr is None else None  # None: where there is no terminal
-    with stop.catching():
+    with stop.catching(), closing(found):
         for outcome in tqdm(found, "done", len(tasks), disable=hidden):
             done.append(outcome)
             file = places.error_file(folder, outcome.point)

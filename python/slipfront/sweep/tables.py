@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from slipfront.files import DataError, exists, is_folder
-from slipfront.folder import LIST, PUBLISHING, UNFINISHED, inside, located, result_file, sha256
+from slipfront.files import DataError, exists
+from slipfront.folder import LIST, located, publication, result_file, sha256
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
 from slipfront.sweep.outcome import QUANTITIES, Cell, read_outcome, waves_over_c_L
@@ -124,42 +122,13 @@ def dataset(sweep: Sweep, table: pd.DataFrame, program: str, waves: dict[str, fl
     return xr.Dataset(variables, coords, about | waves)
 
 
-def listed(folder: Path, made: Path, table: pd.DataFrame) -> str:
-    """checksums.sha256 of the sweep's own files, and of the lists of the points that are done."""
-    sums = {name: sha256(made / name) for name in (TABLE, DATA)}
-    sums[places.DEFINITION] = sha256(folder / places.DEFINITION)
-    for place in table.folder[table.status == DONE]:
-        sums[f"{place}/{LIST}"] = sha256(folder / place / LIST)
-    return "".join(f"{value}  {name}\n" for name, value in sums.items())
-
-
-def end_publication(folder: Path) -> None:
-    """Moves a complete set, whose move may have been cut off, to its place; its list comes last."""
-    publishing = inside(folder, PUBLISHING)
-    if not is_folder(publishing):
-        return
-    for file in sorted(publishing.iterdir(), key=lambda file: file.name == LIST):
-        os.replace(file, folder / file.name)
-    publishing.rmdir()
-
-
 def publish(folder: Path, table: pd.DataFrame, data: xr.Dataset) -> None:
-    """Both files and their list appear together; earlier ones stay until then."""
-    made = inside(folder, UNFINISHED)
-    try:
-        end_publication(folder)
-        shutil.rmtree(made, ignore_errors=True)
-        made.mkdir()
+    """Both files, and a list that has the points that are done as well."""
+    done = [f"{place}/{LIST}" for place in table.folder[table.status == DONE]]
+    others = {name: sha256(folder / name) for name in (places.DEFINITION, *done)}
+    with publication(folder, others) as made:
         table.to_csv(made / TABLE, index=False, float_format="%.12g", lineterminator="\n")
         data.to_netcdf(made / DATA, engine="h5netcdf")
-        (made / LIST).write_text(listed(folder, made, table), encoding="utf-8")
-        for file in made.iterdir():
-            with open(file, "rb") as stream:
-                os.fsync(stream.fileno())
-        os.rename(made, folder / PUBLISHING)
-        end_publication(folder)
-    except OSError as error:
-        raise DataError(f"{folder}: cannot be written: {error.strerror or error}") from None
 
 
 def collect(folder: Path, sweep: Sweep, program: str) -> pd.DataFrame:

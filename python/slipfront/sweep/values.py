@@ -90,8 +90,8 @@ def steps_of(key: str, text: str) -> list[Value]:
     return [value_of(parts[0]), *inside, value_of(parts[1])]
 
 
-def values_of(key: str, spec: Any) -> list[Value]:
-    """The values that a text or a list stands for, in its order; none twice."""
+def values_of(key: str, spec: Any, may_repeat: bool = False) -> list[Value]:
+    """The values that a text or a list stands for, in its order."""
     if isinstance(spec, str):
         values = steps_of(key, spec) if ":" in spec else [value_of(part) for part in spec.split(",")]
     else:
@@ -101,7 +101,7 @@ def values_of(key: str, spec: Any) -> list[Value]:
     if not values or "" in values:
         raise DataError(f"{key}: a value is missing")
     for text, n in Counter(map(text_of, values)).items():
-        if n > 1:
+        if n > 1 and not may_repeat:
             raise DataError(f"{key}: the value {text} is there twice")
     return values
 
