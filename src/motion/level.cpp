@@ -79,12 +79,12 @@ double general_product(const StepLevel& level, const BodyMotion& body, const sol
   return sum;
 }
 
-/// Kicks and moves the nodes of the general rows.
-void move_general(const StepLevel& level, BodyMotion& body) {
-  const double dt = level.step_s;
+/// Adds the products over the general rows, and kicks and moves their nodes.
+void move_general(const StepLevel& level, BodyMotion& body, ImpulseProducts& products) {
   for (const auto& run : level.general_runs) {
     const auto at = run.at, count = run.count;
     const auto first = run.first;
+    const double* mass = &body.op.mass_kg[first];
     const double* a_x = &level.a_x[at];
     const double* a_y = &level.a_y[at];
     double* __restrict u_x = &body.u_m.x[first];
@@ -92,14 +92,21 @@ void move_general(const StepLevel& level, BodyMotion& body) {
     double* __restrict v_x = &body.v_m_per_s.x[first];
     double* __restrict v_y = &body.v_m_per_s.y[first];
     // Runs end where these change.
-    if (!level.takes_impulse[at]) continue;
-    const double moving_s = level.moves[at] ? dt : 0;
+    const double kick_s = level.takes_impulse[at] ? level.step_s : 0;
+    const double moving_s = level.takes_impulse[at] && level.moves[at] ? level.step_s : 0;
+    double u_a = 0, v_a = 0;
+#pragma omp simd reduction(+ : u_a, v_a)
     for (std::size_t k = 0; k < count; ++k) {
-      v_x[k] -= dt * a_x[k];
-      v_y[k] -= dt * a_y[k];
+      u_a += mass[k] * (u_x[k] * a_x[k] + u_y[k] * a_y[k]);
+      v_a += mass[k] * (v_x[k] * a_x[k] + v_y[k] * a_y[k]);
+      v_x[k] -= kick_s * a_x[k];
+      v_y[k] -= kick_s * a_y[k];
       u_x[k] += moving_s * v_x[k];
       u_y[k] += moving_s * v_y[k];
     }
+    if (!run.is_owned) continue;
+    products.u_K_w += u_a;
+    products.v_K_w += v_a;
   }
 }
 
@@ -207,10 +214,6 @@ void add_irregular_products(const StepLevel& level, const Band& band, const Body
     products.u_K_w += body.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
     products.v_K_w += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
-  if (&band == &level.bands.front()) {
-    products.u_K_w += general_product(level, body, u);
-    products.v_K_w += general_product(level, body, v);
-  }
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
@@ -245,7 +248,6 @@ void move_irregular(const StepLevel& level, const Band& band, BodyMotion& body, 
     u.x[n] += dt * v.x[n];
     u.y[n] += dt * v.y[n];
   }
-  if (&band == &level.bands.front()) move_general(level, body);
   if (band.has_top)
     for (const auto n : level.top) u.x[n] += dt * v.x[n];
 }
@@ -368,6 +370,7 @@ void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, so
   if (!is_first) compute_irregular(level, band, body, RowsAround(w, body.op, band.first_row), works);
   if (body.damping_s > 0) add_irregular_products(level, band, body, products);
   move_irregular(level, band, body, works);
+  if (is_first) move_general(level, body, products);
 }
 
 SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op) {

@@ -140,7 +140,10 @@ void compute_batch(const Corners& corners, Stiffness&& stiffness, const double* 
   }
   std::array<SimdVector, 6> f{};
   int k = 0;
+  // Not unrolled, d and f would stay in memory.
+#pragma GCC unroll 6
   for (int r = 0; r < 6; ++r)
+#pragma GCC unroll 6
     for (int c = r; c < 6; ++c, ++k) {
       const auto entry = stiffness(k);
       f[r] += entry * d[c];
