@@ -369,8 +369,8 @@ void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, so
   if (!is_last) filler.fill({band.last_row, band.last_row + 2});
   if (!is_first) compute_irregular(level, band, body, RowsAround(w, body.op, band.first_row), works);
   if (body.damping_s > 0) add_irregular_products(level, band, body, products);
+  if (is_first) move_general(level, body, products);  // before its nodes with dashpots move
   move_irregular(level, band, body, works);
-  if (is_first) move_general(level, body, products);
 }
 
 SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op) {
