@@ -40,9 +40,9 @@ def draw(sees: dict[str, set[str]]) -> str:
         f'width="{WIDTH}" font-family="sans-serif" font-size="14" text-anchor="middle">',
         '<rect width="100%" height="100%" fill="white"/>',
     ]
-    for name, seen in arrows.items():
+    for name, others in arrows.items():
         x, y = places[name]
-        for other in seen:
+        for other in others:
             to_x, to_y = places[other]
             ends = f'x1="{x:.0f}" y1="{y + BOX[1] / 2:.0f}" x2="{to_x:.0f}" y2="{to_y - BOX[1] / 2:.0f}"'
             lines.append(f'<line {ends} stroke="#888"/>')
