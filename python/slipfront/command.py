@@ -60,7 +60,7 @@ class Output:
 
 
 class Parser(argparse.ArgumentParser):
-    """Ends with exit code 1 where its help cannot be written; a wrong command line is told in one line."""
+    """Ends with exit code 1 where its help cannot be written; a wrong command line gives one line."""
 
     def error(self, message: str) -> NoReturn:
         report_error(self.prog, f"{message}; see {self.prog} --help")

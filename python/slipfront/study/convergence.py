@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from slipfront.files import DataError
-from slipfront.study.runs import Printed, Study, make_parser, number, numbers, told
+from slipfront.study.runs import Printed, Study, make_parser, number, numbers, printed
 from slipfront.study.runs import main as study_main
 from slipfront.study.sequence import Limit, Summary, extrapolate, median, summarise
 from slipfront.study.speeds import Place, Run
@@ -162,10 +162,10 @@ def table(comparisons: list[Comparison], tolerance: float) -> list[str]:
     for c in comparisons:
         for direction, fronts in FRONTS.items():
             s, key = c.summary(direction, tolerance), "" if direction else c.plan.key
-            seen = told(s.median_relative_error, " %", 100), told(s.median_order), told(s.growth)
+            seen = printed(s.median_relative_error, " %", 100), printed(s.median_order), printed(s.growth)
             lines.append(form.format(key, fronts, *seen, f"{s.n_stations}/{s.n_stations_of_case}", s.verdict))
         values = " ".join(f"{value:.4g}" for value in c.plan.values)
-        at_limit = told(c.difference_at_limit, " % from the extrapolated", 100)
+        at_limit = printed(c.difference_at_limit, " % from the extrapolated", 100)
         lines.append(f"  values {values}; the case's {c.plan.values[c.plan.own]:.4g}")
         lines[-1] += "" if at_limit == "-" else f"; computed at 0: {at_limit}"
     return lines

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from slipfront.study.runs import Printed, Study, make_parser, number, numbers, told
+from slipfront.study.runs import Printed, Study, make_parser, number, numbers, printed
 from slipfront.study.runs import main as study_main
 from slipfront.study.sequence import FEWEST_STATIONS, UNDEFINED, extrapolate, median
 from slipfront.study.speeds import Place, Run
@@ -122,8 +122,8 @@ def table(ways: list[Stepping]) -> list[str]:
     form = "{:<34}{:>8}{:>10}{:>12}{:>12}"
     lines = [form.format("stepping", "cost", "time", "median", "90 % within")]
     for way in ways:
-        errors = told(way.median_error, " %", 100), told(way.p90_error, " %", 100)
-        lines.append(form.format(way.words, f"{way.cost_over_plain:.2f}", told(way.time_s, " s"), *errors))
+        errors = printed(way.median_error, " %", 100), printed(way.p90_error, " %", 100)
+        lines.append(form.format(way.words, f"{way.cost_over_plain:.2f}", printed(way.time_s, " s"), *errors))
     return [*lines, "", "cost: node updates over those of the plain scheme at the case's step_factor"]
 
 
@@ -172,7 +172,9 @@ def work(study: Study) -> Printed:
         values = ", ".join(f"{key} = {value:.4g}" for key, value in chosen.settings.items())
         verdict = f"cheapest {within}: {values}; the case with it: {study.folder}/chosen.toml"
     study.publish(texts)
-    first = f"V_tip at {len(limit)} stations against the limit of small steps (observed order {told(order)})"
+    first = (
+        f"V_tip at {len(limit)} stations against the limit of small steps (observed order {printed(order)})"
+    )
     return first, [*table(ways), verdict], warnings, runs
 
 

@@ -189,7 +189,7 @@ def number(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def told(value: float, unit: str = "", factor: float = 1) -> str:
+def printed(value: float, unit: str = "", factor: float = 1) -> str:
     """As a printed table has it."""
     return f"{factor * value:.3g}{unit}" if math.isfinite(value) else "-"
 
