@@ -230,12 +230,11 @@ void Body::add_to(StateView& state) {
   auto& [v_x, v_y] = motion_.v_m_per_s;
   add(u_x.size(), nullptr, {u_x, u_y, v_x, v_y});
   for (auto& level : levels_.level) {
-    // Block rows and general rows, each ascending.
-    const auto* rows = level.irregular.data();
-    const auto n_blocks = static_cast<std::size_t>(level.general.begin);
-    add(n_blocks, rows, {level.a_x, level.a_y});
-    add(level.irregular.size() - n_blocks, rows + n_blocks,
-        {level.a_x.data() + n_blocks, level.a_y.data() + n_blocks});
+    // General rows and own stencils, each ascending.
+    const auto n_general = level.stiffness.general.size();
+    add(n_general, level.irregular.data(), {level.a_x, level.a_y});
+    add(level.irregular.size() - n_general, level.irregular.data() + n_general,
+        {level.a_x.data() + n_general, level.a_y.data() + n_general});
     std::vector<StateArray> of_shared;
     for (const auto& [field, is_in_halos] : shared_fields)
       of_shared.insert(of_shared.end(), {(level.shared.*field).x, (level.shared.*field).y});

@@ -11,12 +11,6 @@ std::ptrdiff_t row_start(const BodyMotion& body, int row) {
   return body.op.rows[row].first;
 }
 
-/// Rows that the stencil of `row` reads.
-solid::Span rows_read(const solid::StencilRow& row) {
-  return {row.squares == solid::Squares::above ? row.row : row.row - 1,
-          row.squares == solid::Squares::below ? row.row + 1 : row.row + 2};
-}
-
 solid::ConstRow row_of(solid::RollingRows& w, int row) {
   return {w.x(row), w.y(row)};
 }
@@ -31,6 +25,7 @@ class Filler {
       const auto o = row_start(body_, next_);
       solid::combine_row(body_.op.rows[next_].count, body_.damping_s, &body_.u_m.x[o], &body_.u_m.y[o],
                          &body_.v_m_per_s.x[o], &body_.v_m_per_s.y[o], w_.x(next_), w_.y(next_));
+      solid::repeat_row(body_.op.rows[next_], w_, next_);
     }
   }
 
@@ -40,48 +35,27 @@ class Filler {
   int next_;
 };
 
-/// w of a node in the three rows around `row`.
-class RowsAround {
- public:
-  RowsAround(solid::RollingRows& w, const solid::Operator& op, int row)
-      : first_node_(op.rows[row - 1].first),
-        stride_(op.rows[row].count),
-        rows_{row_of(w, row + 2), row_of(w, row), row_of(w, row + 1)} {}
-
-  solid::Pair operator()(mesh::Node n) const {
-    const mesh::Node from_first = n - first_node_;
-    const int k = static_cast<int>(from_first >= stride_) + static_cast<int>(from_first >= 2 * stride_);
-    const int column = from_first - k * stride_;
-    return {rows_[k].x[column], rows_[k].y[column]};
-  }
-
- private:
-  mesh::Node first_node_;
-  int stride_;
-  solid::ConstRow rows_[3];  ///< row - 1, which rolls where row + 2 does, row, row + 1
-};
-
-/// Sum of m (x . a) over the general rows.
-double general_product(const StepLevel& level, const BodyMotion& body, const solid::Field& x) {
+/// Sum of m (v . a) over a band's irregular nodes.
+double irregular_product(const StepLevel& level, const Band& band, const BodyMotion& body) {
   double sum = 0;
-  for (const auto& run : level.general_runs) {
+  for (const auto& run : band.runs) {
     if (!run.is_owned) continue;
     const auto at = run.at, count = run.count;
     const auto first = run.first;
     const double* mass = &body.op.mass_kg[first];
-    const double* x_x = &x.x[first];
-    const double* x_y = &x.y[first];
+    const double* v_x = &body.v_m_per_s.x[first];
+    const double* v_y = &body.v_m_per_s.y[first];
     const double* a_x = &level.a_x[at];
     const double* a_y = &level.a_y[at];
 #pragma omp simd reduction(+ : sum)
-    for (std::size_t k = 0; k < count; ++k) sum += mass[k] * (x_x[k] * a_x[k] + x_y[k] * a_y[k]);
+    for (std::size_t k = 0; k < count; ++k) sum += mass[k] * (v_x[k] * a_x[k] + v_y[k] * a_y[k]);
   }
   return sum;
 }
 
-/// Adds the products over the general rows, and kicks and moves their nodes.
-void move_general(const StepLevel& level, BodyMotion& body, ImpulseProducts& products) {
-  for (const auto& run : level.general_runs) {
+/// Adds the products over a band's irregular nodes, and kicks and moves those that take the impulse.
+void push_irregular(const StepLevel& level, const Band& band, BodyMotion& body, ImpulseProducts& products) {
+  for (const auto& run : band.runs) {
     const auto at = run.at, count = run.count;
     const auto first = run.first;
     const double* mass = &body.op.mass_kg[first];
@@ -110,15 +84,9 @@ void move_general(const StepLevel& level, BodyMotion& body, ImpulseProducts& pro
   }
 }
 
+/// The force on the loaded edge. @param w  of a node
 template <class W>
-void compute_irregular(StepLevel& level, const Band& band, const BodyMotion& body, W&& w,
-                       record::Energies& works) {
-  solid::for_each_row_product(level.stiffness.irregular, band.irregular, w,
-                              [&](std::size_t r, double x, double y) {
-                                level.a_x[r] = x;
-                                level.a_y[r] = y;
-                              });
-  if (!band.has_top) return;
+void compute_top(StepLevel& level, const BodyMotion& body, W&& w, record::Energies& works) {
   const solid::Span all{0, static_cast<int>(level.top_rows.size())};
   solid::for_each_row_product(level.top_rows, all, w, [&](std::size_t r, double x, double y) {
     level.top_force_N.x[r] = x;
@@ -150,15 +118,24 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
     return body.is_owned(row, span) ? kicks : not_counted;
   };
   int edge = band.edges.begin;
+  auto at = std::max(static_cast<std::size_t>(band.irregular.begin), level.stiffness.general.size());
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.stiffness.stencil[k];
-    const auto& [j, squares, scale, spans] = row;
+    const auto& [j, squares, scale, spans, n_own, own] = row;
     const auto o = row_start(body, j);
     double* u_x = &body.u_m.x[o];
     double* u_y = &body.u_m.y[o];
     double* v_x = &body.v_m_per_s.x[o];
     double* v_y = &body.v_m_per_s.y[o];
-    filler.fill(rows_read(row));
+    filler.fill(solid::rows_read(row));
+    if (n_own > 0) {
+      std::size_t in_row = 0;
+      for (const auto span : spans)
+        in_row = solid::multiply_own(row, in_row, span, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
+                                     &level.a_x[at + in_row], &level.a_y[at + in_row]);
+      at += n_own;
+      continue;
+    }
     if (scale != kick_scale && !solid::is_horizontal_edge(row)) {
       add_kicks(products.kicks, kicks, 1 / kick_scale);
       kicks = {};
@@ -203,18 +180,10 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
   add_kicks(products.kicks, kicks, 1 / kick_scale);
 }
 
-/// Products over a band's block rows and loaded edge.
-void add_irregular_products(const StepLevel& level, const Band& band, const BodyMotion& body,
-                            ImpulseProducts& products) {
+/// Products over the loaded edge.
+void add_top_products(const StepLevel& level, const BodyMotion& body, ImpulseProducts& products) {
   const auto& u = body.u_m;
   const auto& v = body.v_m_per_s;
-  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
-    const auto n = level.irregular[r];
-    if (!body.is_owned(n)) continue;
-    products.u_K_w += body.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
-    products.v_K_w += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
-  }
-  if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
     if (!body.is_owned(n)) continue;
@@ -223,7 +192,8 @@ void add_irregular_products(const StepLevel& level, const Band& band, const Body
   }
 }
 
-void move_irregular(const StepLevel& level, const Band& band, BodyMotion& body, record::Energies& works) {
+/// Kicks and moves nodes with dashpots, and moves the loaded edge.
+void push_boundary(const StepLevel& level, const Band& band, BodyMotion& body, record::Energies& works) {
   auto& u = body.u_m;
   auto& v = body.v_m_per_s;
   const double dt = level.step_s;
@@ -239,15 +209,6 @@ void move_irregular(const StepLevel& level, const Band& band, BodyMotion& body, 
     u.x[n] += dt * after.x;
     u.y[n] += dt * after.y;
   }
-  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
-    if (!level.takes_impulse[r]) continue;
-    const auto n = level.irregular[r];
-    v.x[n] -= dt * level.a_x[r];
-    v.y[n] -= dt * level.a_y[r];
-    if (!level.moves[r]) continue;
-    u.x[n] += dt * v.x[n];
-    u.y[n] += dt * v.y[n];
-  }
   if (band.has_top)
     for (const auto n : level.top) u.x[n] += dt * v.x[n];
 }
@@ -257,46 +218,30 @@ template <class W>
 StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, const W& w_of) {
   const auto& v = body.v_m_per_s;
   const auto& mass = body.op.mass_kg;
-  const int widest = body.op.widest_row();
-  solid::RollingRows w(widest);
-  std::vector<double> a_x(widest), a_y(widest);
   StiffnessProducts sums;
-  int next = 0;
-  for (const auto& row : level.stiffness.stencil) {
-    const auto o = row_start(body, row.row);
-    const auto read = rows_read(row);
-    for (next = std::max(next, read.begin); next < read.end; ++next) {
-      double* w_x = w.x(next);
-      double* w_y = w.y(next);
-      const auto first = static_cast<mesh::Node>(row_start(body, next));
-      for (int i = 0; i < body.op.rows[next].count; ++i) {
-        const solid::Pair at = w_of(first + i);
-        w_x[i] = at.x;
-        w_y[i] = at.y;
-      }
+  const auto w_of_row = [&](int j, double* w_x, double* w_y) {
+    const auto first = body.op.rows[j].first;
+    for (int i = 0; i < body.op.rows[j].count; ++i) {
+      const solid::Pair at = w_of(first + i);
+      w_x[i] = at.x;
+      w_y[i] = at.y;
     }
-    std::ranges::fill(a_x, 0.0);
-    std::ranges::fill(a_y, 0.0);
-    solid::add_stencil_row(body.op, row, row_of(w, row.row + 2), row_of(w, row.row), row_of(w, row.row + 1),
-                           a_x.data(), a_y.data());
-    const solid::ConstRow a{a_x.data(), a_y.data()};
+  };
+  const auto add_row = [&](const solid::StencilRow& row, solid::ConstRow a, solid::ConstRow w) {
+    const auto o = row_start(body, row.row);
     for (const auto span : row.spans) {
       if (!body.is_owned(row.row, span)) continue;
-      sums.u_K_u += solid::row_product(span, &mass[o], a, row_of(w, row.row));
+      sums.u_K_u += solid::row_product(span, &mass[o], a, w);
       sums.v_K_u += solid::row_product(span, &mass[o], a, {&v.x[o], &v.y[o]});
     }
-  }
+  };
+  solid::for_each_stencil_product(body.op, level.stiffness, w_of_row, add_row);
   const auto add = [&](mesh::Node n, double m, double x, double y) {
     if (!body.is_owned(n)) return;
     const solid::Pair at = w_of(n);
     sums.u_K_u += m * (at.x * x + at.y * y);
     sums.v_K_u += m * (v.x[n] * x + v.y[n] * y);
   };
-  const auto all = [](const solid::BlockRows& rows) { return solid::Span{0, static_cast<int>(rows.size())}; };
-  const auto& irregular = level.stiffness.irregular;
-  solid::for_each_row_product(irregular, all(irregular), w_of, [&](std::size_t r, double x, double y) {
-    add(irregular.node[r], mass[irregular.node[r]], x, y);
-  });
   if (const auto& general = level.stiffness.general; general.size() > 0) {
     solid::Field w_field(mass.size()), a(general.size());
     for (std::size_t n = 0; n < mass.size(); ++n) {
@@ -310,7 +255,7 @@ StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, 
       add(general.node()[r], mass[general.node()[r]], a.x[r], a.y[r]);
   }
   const auto& top = level.top_rows;
-  solid::for_each_row_product(top, all(top), w_of,
+  solid::for_each_row_product(top, {0, static_cast<int>(top.size())}, w_of,
                               [&](std::size_t r, double x, double y) { add(top.node[r], 1, x, y); });
   return sums;
 }
@@ -351,6 +296,7 @@ void begin_impulse(StepLevel& level, BodyMotion& body, record::Energies& works) 
 
 void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
                         ImpulseProducts& products, record::Energies& works) {
+  const auto& op = body.op;
   const bool is_first = &band == &level.bands.front(), is_last = &band == &level.bands.back();
   if (body.damping_s > 0) products.next_velocity_K_w += next_velocity_product(level, band, body);
   if (is_first) {
@@ -358,31 +304,39 @@ void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, so
       return solid::Pair{body.u_m.x[n] + body.damping_s * body.v_m_per_s.x[n],
                          body.u_m.y[n] + body.damping_s * body.v_m_per_s.y[n]};
     };
-    compute_irregular(level, band, body, w_now, works);
+    if (band.has_top) compute_top(level, body, w_now, works);
     level.stiffness.general.multiply(body.u_m, body.damping_s, body.v_m_per_s, level.general_space,
-                                     level.a_x.data() + level.general.begin,
-                                     level.a_y.data() + level.general.begin);
+                                     level.a_x.data(), level.a_y.data());
   }
   // The rows below a later band have moved already, and of its own row w is filled.
   Filler filler(body, w, is_first ? band.first_row : band.first_row + 1);
   sweep(level, band, body, filler, w, products);
   if (!is_last) filler.fill({band.last_row, band.last_row + 2});
-  if (!is_first) compute_irregular(level, band, body, RowsAround(w, body.op, band.first_row), works);
-  if (body.damping_s > 0) add_irregular_products(level, band, body, products);
-  if (is_first) move_general(level, body, products);  // before its nodes with dashpots move
-  move_irregular(level, band, body, works);
+  if (!is_first && band.has_top) {
+    const int top = op.n_rows() - 1;
+    const solid::ConstRow rows[] = {row_of(w, top - 1), row_of(w, top)};
+    const auto w_before = [&](mesh::Node n) {
+      const auto is_top = static_cast<int>(n >= op.rows[top].first);
+      const auto i = n - op.rows[top - 1 + is_top].first;
+      return solid::Pair{rows[is_top].x[i], rows[is_top].y[i]};
+    };
+    compute_top(level, body, w_before, works);
+  }
+  if (band.has_top) add_top_products(level, body, products);
+  push_irregular(level, band, body, products);  // before its nodes with dashpots move
+  push_boundary(level, band, body, works);
 }
 
 SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op) {
   SingleRows single;
   const auto& bands = coarsest.bands;
-  const auto has_block_rows = [](const Band& band) {
-    return band.has_block_rows || band.edges.begin < band.edges.end;
+  const auto has_others = [](const Band& band) {
+    return band.is_irregular || band.edges.begin < band.edges.end;
   };
   int max_rows = 0;
   for (int begin = 1; begin < std::ssize(bands); ++begin) {
     int end = begin;
-    while (end < std::ssize(bands) && !has_block_rows(bands[end])) ++end;
+    while (end < std::ssize(bands) && !has_others(bands[end])) ++end;
     // By rows, since parts of a body have other bands.
     const int n_rows = end > begin ? bands[end - 1].last_row - bands[begin].first_row + 1 : 0;
     if (n_rows > max_rows) {
@@ -599,13 +553,7 @@ double coupling_work(const StepLevel& level, const BodyMotion& body) {
 
 double next_velocity_product(const StepLevel& level, const Band& band, const BodyMotion& body) {
   const auto& v = body.v_m_per_s;
-  double sum = 0;
-  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
-    const auto n = level.irregular[r];
-    if (!body.is_owned(n)) continue;
-    sum += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
-  }
-  if (&band == &level.bands.front()) sum += general_product(level, body, v);
+  double sum = irregular_product(level, band, body);
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.stiffness.stencil[k];

@@ -61,7 +61,7 @@ struct Shared {
   std::vector<mesh::Node> node;  ///< ascending
   std::vector<NodeRun> runs;
   std::vector<Dashpot> dashpots;
-  std::vector<std::int32_t> irregular_row;  ///< of the level; -1: in its stencil row
+  std::vector<std::int32_t> irregular_row;  ///< place in `irregular`; -1: on an edge
   solid::Field u_before_m;                  ///< displacements at the level's last impulse
   solid::Field impulse_m_per_s;             ///< the impulse, until the finer level's next step takes it
   /// The constant load, as an acceleration.
@@ -90,20 +90,21 @@ inline constexpr std::array<SharedField, 6> shared_fields = {{{&Shared::u_before
 ///
 /// What reads or writes more is in a level's first band, which is taken with the interface: nodes of the
 /// interface, nodes shared with other levels, and those that have neighbours farther away than the next row.
-/// A row that has block rows is a separate band. Levels but the coarsest have one band.
+/// A row that has irregular nodes is a separate band. Levels but the coarsest have one band.
 struct Band {
   int first_row = 0, last_row = 0;
   // Ranges within the level's lists:
   solid::Span stencil, edges, irregular, dashpots;
+  std::vector<NodeRun> runs;  ///< of the irregular nodes; takes_impulse, moves: uniform in each
   bool has_top = false;
-  /// Whether the whole body, of which this may be a part, has block rows here; of the coarsest level.
-  bool has_block_rows = false;
+  /// Whether the whole body, of which this may be a part, has irregular nodes here; of the coarsest level.
+  bool is_irregular = false;
 };
 
 /// Motion of rows of the coarsest level in single precision. While steps are taken these rows of BodyMotion
 /// are out of date; to_double brings them up to date afterwards.
 struct SingleRows {
-  solid::Span bands;  ///< of the level: above the first one, without block rows
+  solid::Span bands;  ///< of the level: above the first one, without irregular nodes
   int first_row = 0, last_row = -1;
   std::vector<float> u_x_m, u_y_m, v_x_m_per_s, v_y_m_per_s;  ///< [nodes of these rows]
 };
@@ -115,15 +116,14 @@ struct StepLevel {
   double step_s = 0;
   int period = 1;  ///< in steps of the last level
   solid::PartialStiffness stiffness;
-  std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
-  solid::Span general;                ///< the latter, all of them in the first band
+  /// Nodes of the general rows, all of them in the first band, then those with own stencils.
+  std::vector<mesh::Node> irregular;
   solid::GeneralRows::Workspace general_space;
-  std::vector<NodeRun> general_runs;  ///< of the general rows; takes_impulse, moves: uniform in each
-  std::vector<Band> bands;            ///< rows ascending
-  std::vector<Dashpot> dashpots;      ///< rows ascending
-  std::vector<bool> takes_impulse;    ///< [irregular rows] kicked at once: not shared, no dashpot
-  std::vector<bool> moves;            ///< [irregular rows] moved at once: not shared, not in contact
-  std::vector<double> a_x, a_y;       ///< [irregular rows]
+  std::vector<Band> bands;          ///< rows ascending
+  std::vector<Dashpot> dashpots;    ///< as in `irregular`
+  std::vector<bool> takes_impulse;  ///< [irregular] kicked at once: not shared, no dashpot
+  std::vector<bool> moves;          ///< [irregular] moved at once: not shared, not in contact
+  std::vector<double> a_x, a_y;     ///< [irregular]
   std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
   Shared shared;
   solid::BlockRows top_rows;           ///< K of the level's cells, N/m
@@ -205,7 +205,7 @@ void begin_impulse(StepLevel& level, BodyMotion& body, record::Energies& works);
 /// impulse of rows that have moved already.
 void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
                         ImpulseProducts& products, record::Energies& works);
-/// Longest run of bands that can be stepped in single precision; none where all have block rows.
+/// Longest run of bands that can be stepped in single precision; none where all have irregular nodes.
 SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op);
 /// Nothing where there are no such rows.
 void to_single(const BodyMotion& body, SingleRows& single);

@@ -53,25 +53,38 @@ std::optional<std::size_t> place(const std::vector<mesh::Node>& nodes, mesh::Nod
   return static_cast<std::size_t>(found - nodes.begin());
 }
 
-/// The last row of the first band: with the nodes marked, and with those whose neighbours are not all in the
-/// rows beside their own.
+/// The last row of the first band: with the nodes marked and with general rows, whose neighbours may be
+/// farther away than the next row.
 int last_row_of_first_band(const StepLevel& level, const solid::Operator& op,
                            const std::vector<bool>& marked) {
   int last = 0;
   for (std::size_t n = 0; n < marked.size(); ++n)
     if (marked[n]) last = std::max(last, op.row_of(static_cast<mesh::Node>(n)));
   for (const auto n : level.stiffness.general.node()) last = std::max(last, op.row_of(n));
-  const auto& irregular = level.stiffness.irregular;
-  for (std::size_t r = 0; r < irregular.size(); ++r)
-    for (auto k = irregular.first[r]; k < irregular.first[r + 1]; ++k) {
-      const int row = op.row_of(irregular.node[r]), other = op.row_of(irregular.neighbour[k]);
-      if (std::abs(row - other) > 1) last = std::max({last, row, other});
-    }
   return last;
 }
 
+/// Neighbouring nodes among irregular ones that are treated alike.
+std::vector<NodeRun> irregular_runs(const StepLevel& level, solid::Span irregular, const BodyMotion& body) {
+  std::vector<NodeRun> runs;
+  for (int r = irregular.begin; r < irregular.end; ++r) {
+    const bool is_owned = body.is_owned(level.irregular[r]);
+    const bool goes_on = r > irregular.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
+                         is_owned == runs.back().is_owned &&
+                         level.takes_impulse[r] == level.takes_impulse[r - 1] &&
+                         level.moves[r] == level.moves[r - 1];
+    if (goes_on) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1, is_owned});
+    }
+  }
+  return runs;
+}
+
 /// Divides a level's lists, all of them in the order of rows, into bands that end after the rows given.
-void set_bands(StepLevel& level, const solid::Operator& op, const std::vector<int>& last_rows) {
+void set_bands(StepLevel& level, const BodyMotion& body, const std::vector<int>& last_rows) {
+  const auto& op = body.op;
   std::size_t stencil = 0, edges = 0, irregular = 0, dashpots = 0;
   int first_row = 0;
   for (const int last_row : last_rows) {
@@ -89,12 +102,13 @@ void set_bands(StepLevel& level, const solid::Operator& op, const std::vector<in
     for (int k = band.stencil.begin; k < band.stencil.end; ++k)
       if (solid::is_horizontal_edge(level.stiffness.stencil[k])) ++edges;
     band.edges.end = static_cast<int>(edges);
-    const auto& node = level.stiffness.irregular.node;
-    const auto row_of_irregular = [&](std::size_t r) { return op.row_of(node[r]); };
-    band.irregular = take(irregular, node.size(), row_of_irregular);
-    band.dashpots = take(dashpots, level.dashpots.size(), [&](std::size_t k) {
-      return level.dashpots[k].at < node.size() ? row_of_irregular(level.dashpots[k].at) : 0;
-    });
+    const auto row_of_irregular = [&](std::size_t r) {
+      return r < level.stiffness.general.size() ? 0 : op.row_of(level.irregular[r]);
+    };
+    band.irregular = take(irregular, level.irregular.size(), row_of_irregular);
+    band.runs = irregular_runs(level, band.irregular, body);
+    band.dashpots = take(dashpots, level.dashpots.size(),
+                         [&](std::size_t k) { return row_of_irregular(level.dashpots[k].at); });
     band.has_top = last_row + 1 == op.n_rows();
     level.bands.push_back(band);
     first_row = last_row + 1;
@@ -118,18 +132,13 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
       levels.level[l - 1].shared.dashpots.push_back(dashpot);
     } else {
       const auto row = place(level.irregular, n);
-      SLIPFRONT_ASSERT(row, "an absorbing node without a block row");
+      SLIPFRONT_ASSERT(row, "an absorbing node with a shared stencil");
       dashpot.at = *row;
       level.takes_impulse[*row] = false;
       level.dashpots.push_back(dashpot);
     }
   }
-  // Those of general rows, all in the first band, come first; the others in the order of rows.
-  for (auto& level : levels.level)
-    std::ranges::sort(level.dashpots, {}, [&](const Dashpot& d) {
-      return d.at < level.stiffness.irregular.size() ? static_cast<std::ptrdiff_t>(d.at)
-                                                     : -static_cast<std::ptrdiff_t>(d.at);
-    });
+  for (auto& level : levels.level) std::ranges::sort(level.dashpots, {}, &Dashpot::at);
 }
 
 }  // namespace
@@ -260,14 +269,10 @@ void split_spans(std::vector<solid::StencilRow>& rows, const std::vector<solid::
   }
 }
 
-/// Rows without a stencil: block rows first, general ones after them.
-void set_irregular_rows(StepLevel& level) {
+void set_irregular_nodes(StepLevel& level) {
   auto& irregular = level.irregular;
-  irregular = level.stiffness.irregular.node;
-  level.general.begin = static_cast<int>(irregular.size());
-  irregular.insert(irregular.end(), level.stiffness.general.node().begin(),
-                   level.stiffness.general.node().end());
-  level.general.end = static_cast<int>(irregular.size());
+  irregular = level.stiffness.general.node();
+  irregular.insert(irregular.end(), level.stiffness.own.begin(), level.stiffness.own.end());
   level.general_space = level.stiffness.general.workspace();
   level.a_x.resize(irregular.size());
   level.a_y.resize(irregular.size());
@@ -301,22 +306,6 @@ void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, co
   level.top_force_N = solid::Field(top.size());
 }
 
-/// Neighbouring general rows that are treated alike.
-void set_general_runs(StepLevel& level, const BodyMotion& body) {
-  for (int r = level.general.begin; r < level.general.end; ++r) {
-    const bool is_owned = body.is_owned(level.irregular[r]);
-    const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
-                         is_owned == level.general_runs.back().is_owned &&
-                         level.takes_impulse[r] == level.takes_impulse[r - 1] &&
-                         level.moves[r] == level.moves[r - 1];
-    if (goes_on) {
-      ++level.general_runs.back().count;
-    } else {
-      level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1, is_owned});
-    }
-  }
-}
-
 /// Sets the coarsest level's bands: the first one with all that the interface's part of a step needs, rows
 /// with irregular nodes alone. For all parts of a body they come from the same rows.
 void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLevels& levels,
@@ -334,7 +323,7 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
   const int top_row = op.n_rows() - 1;
   std::vector<double> single(op.rows.size(), 0);
   single[top_row] = 1;
-  for (const auto n : level.stiffness.irregular.node)
+  for (const auto n : level.stiffness.own)
     if (body.is_owned(n)) single[op.row_of(n)] = 1;
   const int max_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
   double last_of_first = last_row_of_first_band(level, op, needed);
@@ -349,8 +338,8 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
     while (row - first + 1 < max_rows && single[row] == 0 && single[row + 1] == 0) ++row;
     last_rows.push_back(row);
   }
-  set_bands(level, op, last_rows);
-  for (auto& band : level.bands) band.has_block_rows = single[band.first_row] != 0;
+  set_bands(level, body, last_rows);
+  for (auto& band : level.bands) band.is_irregular = single[band.first_row] != 0;
 }
 
 }  // namespace
@@ -414,7 +403,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
     level.stiffness =
         periods.size() > 1 ? solid::make_partial_stiffness(mesh, material, op, in_level, edge_row) : op.whole;
     split_spans(level.stiffness.stencil, body.own);
-    set_irregular_rows(level);
+    set_irregular_nodes(level);
     const auto in_cells = nodes_of(mesh, in_level);
     std::vector<bool> shared(mesh.n_nodes(), false);
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
@@ -433,9 +422,8 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
     set_loaded_edge(level, l, mesh, material, levels.level_of_node, in_level, in_cells);
   }
   set_dashpots(levels, mesh, material, body);
-  for (auto& level : levels.level) set_general_runs(level, body);
   set_coarsest_bands(mesh, body, levels, largest);
-  for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});
+  for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, body, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (!levels.is_orphan[n] && !op.is_far_edge[n] && body.is_owned(n)) {
       const int updates = substeps / levels.level[levels.level_of_node[n]].period;

@@ -129,7 +129,7 @@ void add_steps(const Timed& timed, Info& info) {
   for (const auto& body : stepper.bodies()) {
     if (info.n_irregular)
       *info.n_irregular +=
-          static_cast<std::int64_t>(body.op().whole.irregular.size() + body.op().whole.general.size());
+          static_cast<std::int64_t>(body.op().whole.own.size() + body.op().whole.general.size());
     info.substeps_of_bodies.push_back(body.period());
   }
   info.stable_step_s = stepper.stable_step_s();

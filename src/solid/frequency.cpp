@@ -20,7 +20,7 @@ bool is_square(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   return solid::is_square(c, c[2] - c[0]);
 }
 
-/// The cells marked and their nodes, all of which get block rows. Nothing of it is held.
+/// The cells marked and their nodes, on no grid. Nothing of it is held.
 mesh::Mesh part_of(const mesh::Mesh& mesh, const std::vector<bool>& in_part) {
   mesh::Mesh part;
   std::vector<mesh::Node> number(mesh.n_nodes(), -1);
@@ -36,7 +36,6 @@ mesh::Mesh part_of(const mesh::Mesh& mesh, const std::vector<bool>& in_part) {
       n = number[n];
     }
   }
-  part.grid = {.columns = part.n_nodes() - 1, .rows = 0, .spacing_m = mesh.grid.spacing_m};
   part.period_m = mesh.period_m;
   return part;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -187,6 +188,37 @@ inline Pair kick_edge_row(const EdgeStencil& s, Span span, ConstRow middle, Cons
   return {u_d, v_d};
 }
 
+/// Puts the products of the nodes [at, ...) of a row of own stencils, in these columns, into a.
+/// @return at of the next ones
+inline std::size_t multiply_own(const StencilRow& row, std::size_t at, Span span, ConstRow south,
+                                ConstRow middle, ConstRow north, double* a_x, double* a_y) {
+  const ConstRow around[] = {south, middle, north};
+  const int first = row.squares == Squares::above ? 1 : 0, end = row.squares == Squares::below ? 2 : 3;
+  const auto n = row.n_own;
+  for (int i = span.begin; i < span.end; i += lanes) {
+    const double* entry = row.own.data() + at + (i - span.begin);
+    SimdVector x{}, y{};
+    for (int j = first; j < end; ++j) {
+#pragma GCC unroll 3
+      for (int column = i - 1; column <= i + 1; ++column) {
+        const SimdVector w_x = load(around[j].x + column), w_y = load(around[j].y + column);
+        x += load(entry) * w_x + load(entry + n) * w_y;
+        y += load(entry + 2 * n) * w_x + load(entry + 3 * n) * w_y;
+        entry += 4 * n;
+      }
+    }
+    const int count = span.end - i;
+    if (count < lanes) {
+      store_partial(a_x + (i - span.begin), x, count);
+      store_partial(a_y + (i - span.begin), y, count);
+    } else {
+      store(a_x + (i - span.begin), x);
+      store(a_y + (i - span.begin), y);
+    }
+  }
+  return at + static_cast<std::size_t>(span.end - span.begin);
+}
+
 /// Kick of a node with squares to the right (inner = 1) or to the left (inner = -1, mirrored stencil) of it.
 template <class Real>
 Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRowOf<Real> south, ConstRowOf<Real> middle,
@@ -228,6 +260,36 @@ inline double row_product(Span span, const double* __restrict m, ConstRow a, Con
 #pragma omp simd reduction(+ : sum)
   for (int i = span.begin; i < span.end; ++i) sum += m[i] * (a.x[i] * b.x[i] + a.y[i] * b.y[i]);
   return sum;
+}
+
+/// Puts w of a row, filled in its columns, where its neighbours look beyond a period.
+inline void repeat_row(const NodeRow& row, RollingRows& w, int j) {
+  if (row.period == 0) return;
+  for (double* values : {w.x(j), w.y(j)}) {
+    values[-1] = values[row.period - 1];
+    values[row.period] = values[0];
+  }
+}
+
+/// Calls f(row, product, w) with M^-1 K w of each stencil row. @param w_of_row  puts w of a row into arrays
+template <class W, class F>
+void for_each_stencil_product(const Operator& op, const PartialStiffness& part, W&& w_of_row, F&& f) {
+  if (part.stencil.empty()) return;
+  RollingRows w(op.widest_row());
+  Field product(static_cast<std::size_t>(op.widest_row()));
+  int next = 0;
+  for (const auto& row : part.stencil) {
+    const auto read = rows_read(row);
+    for (next = std::max(next, read.begin); next < read.end; ++next) {
+      w_of_row(next, w.x(next), w.y(next));
+      repeat_row(op.rows[next], w, next);
+    }
+    for (auto* values : {&product.x, &product.y}) std::ranges::fill(*values, 0.0);
+    const auto of_row = [&](int j) { return ConstRow{w.x(j), w.y(j)}; };
+    const int j = row.row;
+    add_stencil_row(op, row, of_row(j + 2), of_row(j), of_row(j + 1), product.x.data(), product.y.data());
+    f(row, ConstRow{product.x.data(), product.y.data()}, of_row(j));
+  }
 }
 
 }  // namespace slipfront::solid

@@ -34,6 +34,16 @@ std::vector<NodeRow> rows_of(const mesh::Mesh& mesh, std::span<const mesh::Grid>
   return rows;
 }
 
+/// A row whose last cell ends at its first node repeats.
+void set_periods(const mesh::Mesh& mesh, Operator& op) {
+  if (mesh.period_m == 0) return;
+  for (const auto& cell : mesh.cells)
+    for (const auto [left, right] : {std::pair{cell[0], cell[1]}, {cell[3], cell[2]}}) {
+      auto& row = op.rows[op.row_of(left)];
+      if (right == row.first) row.period = left - right + 1;
+    }
+}
+
 /// The block of each node, -1 for the inner nodes of transitions.
 std::vector<int> block_of_nodes(const mesh::Mesh& mesh, std::span<const mesh::Grid> grids) {
   std::vector<int> block(mesh.n_nodes(), -1);
@@ -129,6 +139,7 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   op.grid = mesh.grid;
   op.blocks = grids_of(mesh);
   op.rows = rows_of(mesh, op.blocks);
+  set_periods(mesh, op);
   op.mass_kg = lumped_mass(mesh, material);
   op.is_far_edge = mesh::marked(mesh, mesh.far_edge_nodes);
   if (!op.blocks.empty()) set_stencils(op, material);
@@ -156,7 +167,7 @@ class RowKinds {
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
       const auto& cell = mesh.cells[c];
       const int block = block_of[cell[0]];
-      if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
+      if (block >= 0 && is_in_place(cell, op.blocks[block])) {
         regular_cell_[c] = is_square_of_grid(mesh, op.blocks[block], cell);
       } else {
         for (const auto n : cell) is_general_[n] = true;
@@ -169,7 +180,7 @@ class RowKinds {
   bool is_on_grid(mesh::Node n) const { return !is_general_[n] && !op_.is_far_edge[n] && touches_part(n); }
   bool has_four_cells(mesh::Node n) const { return n_cells(n) == 4; }
 
-  /// The squares of the part around a node with a stencil; nothing for a node that needs a block row.
+  /// The squares of the part around a node with a shared stencil; nothing for a node with its own.
   std::optional<Squares> squares_around(mesh::Node n, std::size_t block, int j) const {
     int above = 0, below = 0, right = 0, left = 0;
     for (const auto c : around_.of(n)) {
@@ -189,8 +200,23 @@ class RowKinds {
     if (above == 0 && below == 2) return Squares::below;
     return std::nullopt;
   }
+  /// Whether a node has cells of the part above it, below it, or both.
+  Squares cells_around(mesh::Node n) const {
+    const auto is_above = [&](std::int32_t c) { return mesh_.cells[c][0] == n || mesh_.cells[c][1] == n; };
+    bool above = false, below = false;
+    for (const auto c : around_.of(n))
+      if (in_part_[c]) (is_above(c) ? above : below) = true;
+    return above && below ? Squares::all : above ? Squares::above : Squares::below;
+  }
 
  private:
+  /// Whether a cell's nodes are neighbours on a block's grid, which may repeat along x.
+  bool is_in_place(const mesh::Cell& cell, const mesh::Grid& grid) const {
+    const auto [n, right, across, up] = cell;
+    const bool joins = right == n + 1 || right == n + 1 - op_.rows[op_.row_of(grid.first)].period;
+    return joins && up == n + grid.stride() && across == right + grid.stride() &&
+           up < grid.first + grid.n_nodes();
+  }
   std::size_t n_cells(mesh::Node n) const { return around_.of(n).size(); }
   bool touches_part(mesh::Node n) const {
     return std::ranges::any_of(around_.of(n), [&](std::int32_t c) { return in_part_[c]; });
@@ -204,35 +230,56 @@ class RowKinds {
   CellsOfNodes around_;
 };
 
-/// Appends the stencil rows of grid row j of a block, and its nodes that need block rows.
-void append_row(const Operator& op, const RowKinds& kinds, std::size_t block, int j,
-                std::vector<StencilRow>& stencil, std::vector<mesh::Node>& irregular) {
+/// Appends the stencil rows of grid row j of a block, without the own stencils.
+void append_row(const Operator& op, const RowKinds& kinds, std::size_t block, int j, PartialStiffness& part) {
   const auto& grid = op.blocks[block];
-  std::array<StencilRow, 5> of_row;
+  std::array<StencilRow, 6> of_row;
+  auto& own = of_row.back();
   for (int i = 0; i <= grid.columns; ++i) {
     const mesh::Node n = grid.node(i, j);
     if (!kinds.is_on_grid(n)) continue;
     const auto squares = kinds.squares_around(n, block, j);
+    auto& spans = squares ? of_row[static_cast<int>(*squares)].spans : own.spans;
     if (!squares) {
-      irregular.push_back(n);
-      continue;
+      const auto cells = kinds.cells_around(n);
+      own.squares = spans.empty() || own.squares == cells ? cells : Squares::all;
+      ++own.n_own;
+      part.own.push_back(n);
     }
-    auto& spans = of_row[static_cast<int>(*squares)].spans;
     if (!spans.empty() && spans.back().end == i) {
       ++spans.back().end;
     } else {
       spans.push_back({i, i + 1});
     }
   }
-  for (const auto squares : {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
-    auto& row = of_row[static_cast<int>(squares)];
+  for (std::size_t kind = 0; kind < of_row.size(); ++kind) {
+    auto& row = of_row[kind];
     if (row.spans.empty()) continue;
     row.row = op.row_of(grid.node(0, j));
-    row.squares = squares;
+    if (row.n_own == 0) row.squares = static_cast<Squares>(kind);
     const bool full_mass = kinds.has_four_cells(grid.node(row.spans.front().begin, j));
     const double ratio = op.grid.spacing_m / grid.spacing_m;
     row.scale = is_horizontal_edge(row) ? (full_mass ? 0.5 : 1) : ratio * ratio;
-    stencil.push_back(std::move(row));
+    part.stencil.push_back(std::move(row));
+  }
+}
+
+/// Puts rows of M^-1 K, of all nodes with own stencils, into them.
+void set_own_stencils(const Operator& op, const BlockRows& rows, std::vector<StencilRow>& stencil) {
+  std::size_t r = 0;
+  for (auto& row : stencil) {
+    if (row.n_own == 0) continue;
+    const auto& [first, count, period] = op.rows[row.row];
+    const auto read = rows_read(row);
+    row.own.assign(static_cast<std::size_t>(12 * (read.end - read.begin)) * row.n_own + lanes, 0.0);
+    for (std::size_t at = 0; at < row.n_own; ++at, ++r)
+      for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+        const int j = op.row_of(rows.neighbour[k]);
+        int right = (rows.neighbour[k] - op.rows[j].first) - (rows.node[r] - first);
+        if (std::abs(right) > 1) right += right > 0 ? -period : period;
+        const auto around = static_cast<std::size_t>(3 * (j - read.begin) + right + 1);
+        for (std::size_t b = 0; b < 4; ++b) row.own[(4 * around + b) * row.n_own + at] = rows.block[k][b];
+      }
   }
 }
 
@@ -242,12 +289,12 @@ PartialStiffness make_partial_stiffness(const mesh::Mesh& mesh, const Material& 
                                         const std::vector<bool>& in_part, int edge_row) {
   const RowKinds kinds(mesh, op, in_part, edge_row);
   PartialStiffness part;
-  std::vector<mesh::Node> irregular, general;
+  std::vector<mesh::Node> general;
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (kinds.is_general(n)) general.push_back(n);
   for (std::size_t block = 0; block < op.blocks.size(); ++block)
-    for (int j = 0; j <= op.blocks[block].rows; ++j) append_row(op, kinds, block, j, part.stencil, irregular);
-  part.irregular = assemble_rows(mesh, material, irregular, op.mass_kg, in_part);
+    for (int j = 0; j <= op.blocks[block].rows; ++j) append_row(op, kinds, block, j, part);
+  set_own_stencils(op, assemble_rows(mesh, material, part.own, op.mass_kg, in_part), part.stencil);
   part.general = GeneralRows(mesh, material, std::move(general), op.mass_kg, in_part);
   return part;
 }
@@ -256,8 +303,11 @@ void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, 
                      ConstRow north, double* a_x, double* a_y) {
   const auto interior = scaled(op.interior, row.scale);
   const auto edge = scaled(op.edge, row.scale);
+  std::size_t at = 0;
   for (const Span span : row.spans) {
-    if (row.squares == Squares::all) {
+    if (row.n_own > 0) {
+      at = multiply_own(row, at, span, south, middle, north, a_x + span.begin, a_y + span.begin);
+    } else if (row.squares == Squares::all) {
       add_interior_row(interior, span, south, middle, north, a_x, a_y);
     } else if (row.squares == Squares::above) {
       add_edge_row(edge, span, middle, north, a_x, a_y);
@@ -274,18 +324,18 @@ void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, 
 }
 
 void add_partial_product(const Operator& op, const PartialStiffness& part, const Field& w, Field& a) {
-  const auto row = [&](int j) {
-    const auto first = op.rows[std::clamp(j, 0, op.n_rows() - 1)].first;
-    return ConstRow{w.x.data() + first, w.y.data() + first};
+  const auto w_of_row = [&](int j, double* w_x, double* w_y) {
+    const auto [first, count, period] = op.rows[j];
+    std::copy_n(&w.x[first], count, w_x);
+    std::copy_n(&w.y[first], count, w_y);
   };
-  for (const auto& stencil : part.stencil) {
-    const int j = stencil.row;
-    add_stencil_row(op, stencil, row(j - 1), row(j), row(j + 1), a.x.data() + op.rows[j].first,
-                    a.y.data() + op.rows[j].first);
-  }
-  for_each_row_product(part.irregular, w, [&](std::size_t r, double x, double y) {
-    a.x[part.irregular.node[r]] += x;
-    a.y[part.irregular.node[r]] += y;
+  for_each_stencil_product(op, part, w_of_row, [&](const StencilRow& row, ConstRow product, ConstRow) {
+    const auto first = op.rows[row.row].first;
+    for (const auto [begin, end] : row.spans)
+      for (int i = begin; i < end; ++i) {
+        a.x[first + i] += product.x[i];
+        a.y[first + i] += product.y[i];
+      }
   });
   if (part.general.size() == 0) return;
   auto space = part.general.workspace();

@@ -103,36 +103,48 @@ void for_each_row_product(const BlockRows& rows, const Field& w, F&& f) {
       f);
 }
 
-/// Which of the four squares around a node belong to a part of the plate.
+/// Which of the four cells around a node belong to a part of the plate.
 enum class Squares { all, above, below, right, left };
 
 /// Nodes with consecutive numbers: a grid row of a block, or the inner nodes of a transition.
 struct NodeRow {
   mesh::Node first = 0;
   int count = 0;
+  int period = 0;  ///< columns after which the row repeats; 0 where it does not
 };
 
-/// Nodes of one grid row that share a stencil.
+/// Nodes of one grid row that share a stencil, or have stencils of their own.
 struct StencilRow {
   int row = 0;  ///< of Operator::rows
+  /// Of own stencils: all, or above or below where no node has others.
   Squares squares = Squares::all;
   /// Of the stencil: the mass of a node amid the smallest squares over that of one amid the block's; at
   /// horizontal edges half a square's mass on either side over the node's mass.
   double scale = 1;
   std::vector<Span> spans;
+  std::size_t n_own = 0;  ///< nodes with own stencils: all, or none where one is shared
+  /// Own stencils: xx, xy, yx, yy of three nodes in each row that is read, [entries][nodes], and room for a
+  /// vector behind.
+  std::vector<double> own;
 };
 
-/// Whether the row's nodes have squares above or below them only.
-inline bool is_horizontal_edge(const StencilRow& row) {
-  return row.squares == Squares::above || row.squares == Squares::below;
+/// Rows of nodes that a stencil row reads.
+inline Span rows_read(const StencilRow& row) {
+  return {row.squares == Squares::above ? row.row : row.row - 1,
+          row.squares == Squares::below ? row.row + 1 : row.row + 2};
 }
 
-/// What some cells of a body contribute to M^-1 K of the nodes that may move: stencils where the cells are
-/// equal squares, block rows at a block's sides and corners; products cell by cell at the transitions between
-/// blocks, both ends included, and on meshes that know no grid.
+/// Whether the row's nodes share the stencil of those with squares above or below them only.
+inline bool is_horizontal_edge(const StencilRow& row) {
+  return row.n_own == 0 && (row.squares == Squares::above || row.squares == Squares::below);
+}
+
+/// What some cells of a body contribute to M^-1 K of the nodes that may move: stencils on the grids, shared
+/// where the cells are equal squares; products cell by cell at the transitions between blocks, both ends
+/// included, where corners are folded, and on meshes that know no grid.
 struct PartialStiffness {
   std::vector<StencilRow> stencil;  ///< rows ascending
-  BlockRows irregular;
+  std::vector<mesh::Node> own;      ///< nodes with stencils of their own, in the order of the rows
   GeneralRows general;
 };
 
@@ -174,7 +186,8 @@ struct ConstRowOf {
 };
 using ConstRow = ConstRowOf<double>;
 
-/// Adds a stencil row's M^-1 K w to a row of a; `south` or `north` is not read where there are no squares.
+/// Adds a stencil row's M^-1 K w to a row of a, which is 0 so far; `south` or `north` is not read where there
+/// are no cells.
 void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,
                      ConstRow north, double* a_x, double* a_y);
 

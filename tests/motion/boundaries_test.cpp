@@ -101,7 +101,7 @@ TEST(Periodic, PlateHasNoSeam) {
     difference = std::max({difference, std::abs(u.x[n] - u_moved.x[m]), std::abs(u.y[n] - u_moved.y[m])});
   }
   EXPECT_GT(largest, 1e-7);
-  // Stencils at one place, block rows at the other: rounding, which the law does not amplify.
+  // Shared stencils at one place, own ones at the other: rounding, which the law does not amplify.
   EXPECT_LT(difference, 1e-9 * largest);
 }
 
