@@ -124,7 +124,7 @@ struct StepLevel {
   std::vector<bool> takes_impulse;  ///< [irregular] kicked at once: not shared, no dashpot
   std::vector<bool> moves;          ///< [irregular] moved at once: not shared, not in contact
   std::vector<double> a_x, a_y;     ///< [irregular]
-  std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
+  std::vector<mesh::Node> top;      ///< nodes of the loaded edge that move with this level
   Shared shared;
   solid::BlockRows top_rows;           ///< K of the level's cells, N/m
   std::vector<mesh::Node> edge_nodes;  ///< of the stencil's edge rows, all in the lowest block

@@ -38,7 +38,7 @@ std::vector<NodeRow> rows_of(const mesh::Mesh& mesh, std::span<const mesh::Grid>
 void set_periods(const mesh::Mesh& mesh, Operator& op) {
   if (mesh.period_m == 0) return;
   for (const auto& cell : mesh.cells)
-    for (const auto [left, right] : {std::pair{cell[0], cell[1]}, {cell[3], cell[2]}}) {
+    for (const auto& [left, right] : {std::pair{cell[0], cell[1]}, {cell[3], cell[2]}}) {
       auto& row = op.rows[op.row_of(left)];
       if (right == row.first) row.period = left - right + 1;
     }

@@ -341,8 +341,8 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
   const auto stepper = start_event(config, initial);
   const double held = allocated_bytes() - before;
   // Mass, u, v: 40 bytes a node, and less than four for the levels. Besides, own stencils of the
-  // sides and block rows of the loaded edge, once of the plate and once of a level: 9 blocks of 36 bytes each, in
-  // vectors that may have room for twice as many; and some 60 numbers for each interface node.
+  // sides and block rows of the loaded edge, once of the plate and once of a level: 9 blocks of 36 bytes
+  // each, in vectors that may have room for twice as many; and some 60 numbers for each interface node.
   const auto& plate = dynamic_cast<const motion::Stepper&>(*stepper).plate();
   const auto rows = static_cast<double>(plate.whole.own.size() + plate.far_edge_rows.size());
   EXPECT_GT(held, 40 * n);
