@@ -3,16 +3,16 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string_view>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/per_node.hpp"
 #include "record/record.hpp"
 
 namespace slipfront::fronts {
 
-inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double undefined = nan;
 
 /// What of the solid the energy density needs.
 struct Elasticity {
@@ -49,11 +49,10 @@ struct FrontOptions {
   double pulse_share = 0.2;  ///< pulse-like below it
   PerNode mu_s = 0;          ///< static friction coefficient, for U_r = U(p_r, mu_s p_r)
   Elasticity elasticity;
-  double exclude_left_m =
-      -std::numeric_limits<double>::infinity();  ///< no t_d, p_d at x below it (trigger zone)
-  double exclude_right_m = std::numeric_limits<double>::infinity();  ///< ... nor above it
-  double exclude_from_m = std::numeric_limits<double>::infinity();   ///< ... nor from here (nucleation patch)
-  double exclude_to_m = -std::numeric_limits<double>::infinity();    ///< ... to here
+  double exclude_left_m = -infinity;  ///< no t_d, p_d at x below it (trigger zone)
+  double exclude_right_m = infinity;  ///< ... nor above it
+  double exclude_from_m = infinity;   ///< ... nor from here (nucleation patch)
+  double exclude_to_m = -infinity;    ///< ... to here
   /// The trigger zone, or the nucleation patch itself: no v_tip there, both ends included.
   std::vector<Zone> driven;
   double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
