@@ -175,7 +175,7 @@ void set_speed(FrontPoint& point, const record::SlipRecord& record, const Path& 
 /// Tractions of a node at an onset; undefined beyond the halo.
 record::Traction traction_at(const record::SlipRecord& record, std::size_t onset, int node) {
   const int offset = node - record.onsets[onset].node;
-  if (std::abs(offset) > record.halo) return {undefined, undefined};
+  if (std::abs(offset) > record.halo) return {nan, nan};
   const int index = offset + record.halo;
   return record.around_onset(onset)[static_cast<std::size_t>(index)];
 }
@@ -186,7 +186,7 @@ record::Traction traction_ahead(const record::SlipRecord& record, const Passage&
   Bracket at = bracket(tip, run_m);
   if (at.fraction < position_tolerance) at.fraction = 0.0;
   if (at.fraction > 1.0 - position_tolerance) at.fraction = 1.0;
-  if (time_at(tip, at) >= reaches_node_s) return {undefined, undefined};  // a jump
+  if (time_at(tip, at) >= reaches_node_s) return {nan, nan};  // a jump
   const record::Traction ahead = traction_at(record, tip.onset[at.ahead], node);
   if (at.fraction == 1.0) return ahead;
   const record::Traction behind = traction_at(record, tip.onset[at.behind], node);

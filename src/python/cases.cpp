@@ -34,7 +34,6 @@
 namespace slipfront::python {
 namespace {
 
-namespace nb = nanobind;
 using namespace nb::literals;
 namespace fs = std::filesystem;
 

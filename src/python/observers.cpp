@@ -14,8 +14,6 @@
 namespace slipfront::python {
 namespace {
 
-namespace nb = nanobind;
-
 /// The interface at the beginning of a step.
 struct InterfaceState {
   std::int64_t step = 0;

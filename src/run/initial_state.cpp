@@ -238,7 +238,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
                                           initial.base ? &*initial.base : nullptr);
     initial.spontaneous = initial.common;
-    initial.critical_shear_m = fronts::undefined;
+    initial.critical_shear_m = nan;
     initial.wall_s = seconds_since(start);
     return initial;
   }
