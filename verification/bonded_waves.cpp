@@ -19,7 +19,6 @@ namespace slipfront::verification::bonded_waves {
 
 namespace {
 
-using Complex = std::complex<double>;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double width_m = 0.1;  ///< one wavelength along the bond
 constexpr double k_x = 2 * std::numbers::pi / width_m;
