@@ -38,16 +38,6 @@ namespace nb = nanobind;
 using namespace nb::literals;
 namespace fs = std::filesystem;
 
-/// What work on a case throws, with the place in the case that it is about.
-template <class Work>
-auto at_its_place(const input::CaseFile& given, const Work& work) {
-  try {
-    return work();
-  } catch (const UserError& error) {
-    throw given.with_place(error);
-  }
-}
-
 /// A folder that a run of this process works in: the lock of the folder keeps out other processes alone.
 class FolderInUse {
  public:
@@ -111,7 +101,7 @@ void run_config(const input::CaseFile& given, const input::Case& config, const f
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   session.folder.require_empty(overwrite);
   session.complete([&] {
-    return at_its_place(given, [&] {
+    return given.placing_errors([&] {
       run::require_fit(config, session.folder.dir());
       return run::run_into(session.folder, config, session.options, session.watcher.hooks());
     });
@@ -322,7 +312,7 @@ void bind_cases(nb::module_& module) {
       .def_prop_ro("static_coefficient",
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
       .def(
-          "info", [](const C& c) { return at_its_place(c, [&] { return run::info(c.config()); }); },
+          "info", [](const C& c) { return c.placing_errors([&] { return run::info(c.config()); }); },
           nb::call_guard<nb::gil_scoped_release>(),
           "What follows from the case; only loads that are forces take its statics.")
       .def("stable_step_s", &stable_step_s, "element_size_m"_a,
