@@ -31,6 +31,11 @@ class Subset {
   /// Without the numbers from `end` on.
   Subset below(int end) const;
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(ranges_);
+  }
+
  private:
   std::vector<Range> ranges_;
 };

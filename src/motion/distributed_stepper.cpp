@@ -47,15 +47,9 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
         const auto nodes = body.nodes(r, range);
         values.insert(values.end(), component->begin() + nodes.first, component->begin() + nodes.end());
       }
-    to.put(values);
+    MessageArchive archive(to);
+    archive(values);
   }
-}
-
-solid::Field take_field(MessageBuffer& from) {
-  solid::Field field;
-  field.x = from.take_all<double>();
-  field.y = from.take_all<double>();
-  return field;
 }
 
 /// Rows of a body in groups of a chunk's nodes, at most, or single ones.
@@ -119,29 +113,6 @@ Decomposition decomposition_of(Partition partition, std::span<const mesh::Mesh* 
     whole.interface_nodes.push_back(interface_nodes_in(*bodies.front(), whole.partition.all(k)));
     whole.own_interface_nodes.push_back(own_interface_nodes_in(*bodies.front(), whole.partition.own(k)));
   }
-  return whole;
-}
-
-void Decomposition::put(MessageBuffer& to) const {
-  to.put(partition.first).put(partition.halo).put(partition.columns_per_step);
-  to.put(partition.steps_per_exchange).put(partition.is_ring);
-  to.put(blocks.size());
-  for (const auto& of_body : blocks) to.put(of_body);
-  for (const auto& places : interface_nodes) to.put(places.ranges());
-  to.put(own_interface_nodes);
-}
-
-Decomposition Decomposition::take(MessageBuffer& from) {
-  Decomposition whole;
-  whole.partition.first = from.take_all<int>();
-  whole.partition.halo = from.take<int>();
-  whole.partition.columns_per_step = from.take<int>();
-  whole.partition.steps_per_exchange = from.take<int>();
-  whole.partition.is_ring = from.take<bool>();
-  for (auto n = from.take<std::size_t>(); n > 0; --n) whole.blocks.push_back(from.take_all<mesh::Grid>());
-  for (int n = whole.partition.n_subdomains(); n > 0; --n)
-    whole.interface_nodes.emplace_back(from.take_all<mesh::Subset::Range>());
-  whole.own_interface_nodes = from.take_all<solid::Span>();
   return whole;
 }
 
@@ -215,7 +186,7 @@ void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m
   });
   statics::Equilibrium own;
   for (auto* field : {&own.u_m, &own.u_per_shear, &own.below_u_m, &own.below_u_per_shear})
-    *field = take_field(fields);
+    *field = unpacked<solid::Field>(fields);
   fields = {};
   own.tractions.t_s_Pa = cut(e.tractions.t_s_Pa, own_places());
   own.tractions.p_s_Pa = cut(e.tractions.p_s_Pa, own_places());
@@ -257,8 +228,8 @@ void DistributedStepper::set_probes(std::vector<Probe> probes) {
 
 std::vector<double> DistributedStepper::gathered(const std::vector<double>& own) const {
   std::vector<double> report;
-  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own))) {
-    const auto values = of_rank.take_all<double>();
+  for (auto& of_rank : processes_.all_gather(packed(own))) {
+    const auto values = unpacked<std::vector<double>>(of_rank);
     report.insert(report.end(), values.begin(), values.end());
   }
   std::vector<double> values(report.size());
@@ -422,13 +393,14 @@ void DistributedStepper::add_tractions_of_others(SlipUpdates& seen, std::size_t 
   SLIPFRONT_ASSERT(seen.around.size() == first_around, "tractions around each onset");
   if (gaps.empty()) return;  // on all ranks
   MessageBuffer own;
+  MessageArchive archive(own);
   for (const auto& gap : gaps) {
     if (gap.owner != rank()) continue;
     const int place = own_places().place_of(gap.node);
-    own.put(traction_between(log_.at(gap.update, place), log_.at(gap.update + 1, place), gap.share));
+    archive(record::between(log_.at(gap.update, place), log_.at(gap.update + 1, place), gap.share));
   }
   auto of_ranks = processes_.all_gather(own);
-  for (const auto& gap : gaps) seen.around[gap.at] = of_ranks[gap.owner].take<record::Traction>();
+  for (const auto& gap : gaps) seen.around[gap.at] = unpacked<record::Traction>(of_ranks[gap.owner]);
 }
 
 std::vector<double> DistributedStepper::probed_u_m() const {
@@ -514,8 +486,8 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
   });
   const auto all = nodes_of(chunk, columns_);
   std::vector<double> values(processes_.is_root() ? static_cast<std::size_t>(all.count) : 0);
-  processes_.gather(std::move(MessageBuffer().put(own)), [&](int subdomain, MessageBuffer& buffer) {
-    const auto of_subdomain = buffer.take_all<double>();
+  processes_.gather(packed(own), [&](int subdomain, MessageBuffer& buffer) {
+    const auto of_subdomain = unpacked<std::vector<double>>(buffer);
     auto from = of_subdomain.begin();
     for_own_nodes(columns_[body], subdomain, [&](const auto& nodes) {
       std::copy_n(from, nodes.count, values.begin() + (nodes.first - all.first));
@@ -527,10 +499,9 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
 
 void DistributedStepper::keep(const std::function<void(const StateByNode& chunk)>& take) {
   halo_->finish();
-  MessageBuffer own;
-  motion::keep(stepper_->state(own_places()), stepper_->step()).put(own);
+  auto own = packed(motion::keep(stepper_->state(own_places()), stepper_->step()));
   processes_.gather(std::move(own), [&](int subdomain, MessageBuffer& buffer) {
-    auto chunk = StateByNode::take(buffer);
+    auto chunk = unpacked<StateByNode>(buffer);
     buffer = {};
     chunk.step = step_;
     chunk.number = subdomain;
@@ -545,26 +516,21 @@ void DistributedStepper::restore(const Loads& loads, const std::function<StateBy
   StateRestorer restorer(stepper_->state(own_places()));
   for (bool is_last = false; !is_last;) {
     StateByNode chunk;
-    is_last = processes_
-                  .from_root([&](MessageBuffer& to) {
-                    chunk = next();
-                    chunk.require_of(columns_);
-                    to.put(chunk.is_last());
-                  })
-                  .take<bool>();
+    is_last = unpacked<bool>(processes_.from_root([&](MessageBuffer& to) {
+      chunk = next();
+      chunk.require_of(columns_);
+      to.append(packed(chunk.is_last()));
+    }));
     auto part = processes_.scatter([&](int subdomain) {
       // As many subdomains as kept them go on with their own sums; of another number the first one has them
       // all.
       const bool has_sums =
           chunk.n_chunks == partition().n_subdomains() ? subdomain == chunk.number : subdomain == 0;
-      MessageBuffer buffer;
-      chunk
-          .in(partition().all(subdomain), whole_.interface_nodes[static_cast<std::size_t>(subdomain)],
-              columns_, has_sums)
-          .put(buffer);
-      return buffer;
+      return packed(chunk.in(partition().all(subdomain),
+                             whole_.interface_nodes[static_cast<std::size_t>(subdomain)], columns_,
+                             has_sums));
     });
-    processes_.together([&] { restorer.add(StateByNode::take(part)); });
+    processes_.together([&] { restorer.add(unpacked<StateByNode>(part)); });
   }
   processes_.together([&] { stepper_->update_after_restore(restorer.finish()); });
   return_freed_memory();

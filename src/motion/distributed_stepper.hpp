@@ -29,8 +29,10 @@ struct Decomposition {
   std::vector<mesh::Subset> interface_nodes;
   std::vector<solid::Span> own_interface_nodes;
 
-  void put(MessageBuffer& to) const;
-  static Decomposition take(MessageBuffer& from);
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(partition, blocks, interface_nodes, own_interface_nodes);
+  }
 };
 /// @param bodies  the whole meshes, or those of their interfaces
 Decomposition decomposition_of(Partition partition, std::span<const mesh::Mesh* const> bodies);
