@@ -173,7 +173,7 @@ DistributedStepper::DistributedStepper(Processes& processes, Decomposition whole
 
 DistributedStepper::~DistributedStepper() = default;
 
-void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, const Loads& loads) {
+void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, Loads loads) {
   halo_->finish();
   auto fields = processes_.scatter([&](int subdomain) {
     MessageBuffer buffer;
