@@ -201,9 +201,9 @@ class Stepper : public TimeStepper {
   void advance_band(std::int64_t step, std::size_t band);
 
   std::vector<Body> bodies_;
-  double lowest_step_s_ = 0;
+  double stable_step_s_ = 0, lowest_step_s_ = 0;
   Coupling coupling_;
-  double stable_step_s_ = 0, step_s_ = 0;
+  double step_s_ = 0;
   int substeps_ = 1;  ///< in a step
   int n_bands_ = 1;   ///< of the bodies that lead
   std::unique_ptr<threads::Wavefront> wavefront_;
