@@ -30,6 +30,15 @@ class Subset {
   int number_at(int place) const;
   /// Without the numbers from `end` on.
   Subset below(int end) const;
+  /// Of values of the whole those of its numbers; none of none.
+  template <class T>
+  std::vector<T> of(const std::vector<T>& values) const {
+    if (ranges_.empty() || values.empty()) return values;
+    std::vector<T> some;
+    for (const auto& range : ranges_)
+      some.insert(some.end(), values.begin() + range.begin, values.begin() + range.end);
+    return some;
+  }
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -20,20 +20,11 @@ solid::Span own_interface_nodes_in(const mesh::Mesh& mesh, solid::Span columns) 
   return {places.ranges().front().begin, places.ranges().front().end};
 }
 
-template <class T>
-std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
-  std::vector<T> some;
-  if (values.empty()) return some;
-  for (const auto& range : places.ranges())
-    some.insert(some.end(), values.begin() + range.begin, values.begin() + range.end);
-  return some;
-}
-
-Loads cut(const Loads& loads, const mesh::Subset& places) {
-  auto some = loads;
-  for (auto* values : {&some.prestress_t_Pa, &some.prestress_p_Pa, &some.trigger_force_N_per_m, &some.intact})
-    *values = cut(*values, places);
-  return some;
+Loads cut(Loads loads, const mesh::Subset& places) {
+  for (auto* values :
+       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
+    *values = places.of(*values);
+  return loads;
 }
 
 /// Some columns of a field over a whole body, or none of an empty one.
@@ -188,10 +179,10 @@ void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m
   for (auto* field : {&own.u_m, &own.u_per_shear, &own.below_u_m, &own.below_u_per_shear})
     *field = unpacked<solid::Field>(fields);
   fields = {};
-  own.tractions.t_s_Pa = cut(e.tractions.t_s_Pa, own_places());
-  own.tractions.p_s_Pa = cut(e.tractions.p_s_Pa, own_places());
-  own.contact = cut(e.contact, own_places());
-  stepper_->start(own, top_speed_m_per_s, cut(loads, own_places()));
+  own.tractions.t_s_Pa = own_places().of(e.tractions.t_s_Pa);
+  own.tractions.p_s_Pa = own_places().of(e.tractions.p_s_Pa);
+  own.contact = own_places().of(e.contact);
+  stepper_->start(own, top_speed_m_per_s, cut(std::move(loads), own_places()));
   own = {};
   return_freed_memory();
   halo_->renew();
@@ -314,8 +305,9 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
 
 void DistributedStepper::make_finder(const SlipFinder& whole) {
   const auto& known = whole.memory();
-  SlipFinder::Memory memory{known.time_s, cut(known.t_Pa, own_places()), cut(known.p_Pa, own_places()),
-                            cut(known.strength_Pa, own_places()), cut(known.slipping, own_places())};
+  const auto& places = own_places();
+  SlipFinder::Memory memory{known.time_s, places.of(known.t_Pa), places.of(known.p_Pa),
+                            places.of(known.strength_Pa), places.of(known.slipping)};
   const auto own = stepper_->bodies().front().interface_side().own;
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   whole.halo(), whole.creep_m_per_s());

@@ -33,17 +33,6 @@ struct Plan {
   }
 };
 
-interface::ContactModel contact_of(const input::Case& config, const std::vector<double>& whole_x_m,
-                                   const mesh::Subset& interface_nodes) {
-  auto contact = input::contact_model(config, whole_x_m);
-  if (contact.of_nodes.empty()) return contact;
-  std::vector<interface::FrictionLaw> laws;
-  for (int k = 0; k < interface_nodes.count(); ++k)
-    laws.push_back(contact.of_nodes[static_cast<std::size_t>(interface_nodes.number_at(k))]);
-  contact.of_nodes = interface::NodeLaws(std::move(laws));
-  return contact;
-}
-
 /// Some columns of the bodies, for a stepper.
 class Columns {
  public:
@@ -103,7 +92,7 @@ IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh:
   const mesh::Subset all({{columns.begin, columns.end}});
   Columns some(config, all, interface.grid.stride(), columns, steps, [](std::span<double>) {});
   const auto contact =
-      contact_of(config, interface_x_m(interface), motion::interface_nodes_in(interface, all));
+      input::contact_model(config, interface_x_m(interface), motion::interface_nodes_in(interface, all));
   auto stepper = std::make_unique<motion::Stepper>(some.sources(), contact, config.time, motion::Execution{});
   return {std::move(some.plate), std::move(some.base), std::move(stepper)};
 }
@@ -130,8 +119,8 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
   const auto& partition = plan.whole.partition;
   const Columns own(config, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
                     [&](std::span<double> values) { processes.reduce_max(values); });
-  const auto contact =
-      contact_of(config, plan.whole_x_m, plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
+  const auto contact = input::contact_model(config, plan.whole_x_m,
+                                            plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
   auto stepper = std::make_unique<motion::DistributedStepper>(
       processes, plan.whole, own.sources(), contact, config.time, motion::Execution{.threads = plan.threads});
   stepper->set_probes(plan.probes);
