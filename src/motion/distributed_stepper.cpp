@@ -176,8 +176,7 @@ void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m
     return buffer;
   });
   statics::Equilibrium own;
-  for (auto* field : {&own.u_m, &own.u_per_shear, &own.below_u_m, &own.below_u_per_shear})
-    *field = unpacked<solid::Field>(fields);
+  for (auto* field : own.displacements()) *field = unpacked<solid::Field>(fields);
   fields = {};
   own.tractions.t_s_Pa = own_places().of(e.tractions.t_s_Pa);
   own.tractions.p_s_Pa = own_places().of(e.tractions.p_s_Pa);

@@ -44,6 +44,14 @@ std::string strengths_text(const input::Case& config) {
 
 }  // namespace
 
+void InitialState::release_displacements(const statics::Equilibrium* but) {
+  std::vector<statics::Equilibrium*> states = {&common, &spontaneous};
+  if (ramp) states.insert(states.end(), {&ramp->common, &ramp->spontaneous});
+  for (auto* state : states)
+    for (auto* field : state->displacements())
+      if (state != but) *field = {};
+}
+
 std::string initial_state_key(const input::Case& config) {
   using input::Stage;
   if (is_prestressed(config))

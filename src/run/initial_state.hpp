@@ -38,6 +38,9 @@ struct InitialState {
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
   std::optional<FoundLoads> loads;   ///< where the case gives forces
 
+  /// Of all states but one.
+  void release_displacements(const statics::Equilibrium* but = nullptr);
+
   /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {

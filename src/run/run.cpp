@@ -116,14 +116,6 @@ std::unique_ptr<motion::TimeStepper> stepper_of(const input::Case& config, Initi
   return new_distributed_stepper(config, initial, processes, execution);
 }
 
-std::array<solid::Field*, 4> displacements_of(statics::Equilibrium& state) {
-  return {&state.u_m, &state.u_per_shear, &state.below_u_m, &state.below_u_per_shear};
-}
-
-void release_displacements(statics::Equilibrium& state) {
-  for (auto* field : displacements_of(state)) *field = {};
-}
-
 /// What only the stepper needed.
 void release_nodes(InitialState& initial) {
   const auto release = [](mesh::Mesh& mesh) {
@@ -145,20 +137,15 @@ motion::Loads loads_of_event(const input::Case& config, const InitialState& init
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
                                                  const motion::Execution& execution, Processes& processes) {
   auto& state = event_state(config, initial);
-  if (&state != &initial.common) release_displacements(initial.common);
-  if (&state != &initial.spontaneous) release_displacements(initial.spontaneous);
-  if (initial.ramp) {
-    release_displacements(initial.ramp->common);
-    release_displacements(initial.ramp->spontaneous);
-  }
+  initial.release_displacements(&state);
   const auto loads = from_root(processes, [&] { return loads_of_event(config, initial); });
   // The other ranks get the state without its displacements, and their columns of these.
   std::array<solid::Field, 4> u;
-  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *displacements_of(state)[k]);
+  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
   auto stepper = stepper_of(config, initial, execution, processes);
-  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *displacements_of(state)[k]);
+  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
   stepper->start(state, top_speed_m_per_s(config), loads);
-  release_displacements(state);
+  initial.release_displacements();
   release_nodes(initial);
   return stepper;
 }

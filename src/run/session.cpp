@@ -21,7 +21,6 @@
 #include "run/choices.hpp"
 #include "run/fields.hpp"
 #include "run/shared_states.hpp"
-#include "run/snapshot_plan.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -325,8 +324,7 @@ Finished Session::finish(motion::Event event) {
     measure(run.result, run.initial);
     write_results(run);
   });
-  if (!snapshot_plan(config_, run.result.step_s).times_s.empty())
-    write_fields(folder_, config_, processes_, hooks_.note);
+  write_fields(folder_, config_, processes_, hooks_.note);
   at_root([&] {
     if (status_of(run.result).name == "complete") folder_->publish();
   });
