@@ -47,7 +47,7 @@ class StateArchive {
   /// Writes n bytes, or reads them.
   virtual void bytes(void* data, std::size_t n) = 0;
   /// Refuses a length that what is left to read cannot hold.
-  virtual void require(std::uint64_t count) const = 0;
+  virtual void require(std::uint64_t /*count*/) const {}
 
   template <class... T>
   void operator()(T&&... members) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +30,7 @@ void add_page(CLI::App& app, const Program& program);
 std::string version_text();
 
 /// The arguments of every subcommand that works on a case: CASE.toml [--set key=value]...
-class CaseArguments {
- public:
+struct CaseArguments {
   std::string file;
   std::vector<std::string> set;
 

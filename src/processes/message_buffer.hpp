@@ -60,7 +60,6 @@ class MessageArchive final : public StateArchive {
     else
       buffer_.put_bytes(data, n);
   }
-  void require(std::uint64_t /*count*/) const override {}
 
  private:
   MessageArchive(MessageBuffer& buffer, bool is_loading) : buffer_(buffer), is_loading_(is_loading) {}
