@@ -15,9 +15,9 @@ namespace slipfront::motion {
 namespace {
 
 solid::Span own_interface_nodes_in(const mesh::Mesh& mesh, solid::Span columns) {
-  const auto places = interface_nodes_in(mesh, mesh::Subset({{columns.begin, columns.end}}));
+  const auto places = interface_nodes_in(mesh, mesh::Subset({columns}));
   SLIPFRONT_ASSERT(places.ranges().size() == 1, "interface nodes in the order of columns");
-  return {places.ranges().front().begin, places.ranges().front().end};
+  return places.ranges().front();
 }
 
 Loads cut(Loads loads, const mesh::Subset& places) {
@@ -44,8 +44,8 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
 }
 
 /// Rows of a body in groups of a chunk's nodes, at most, or single ones.
-std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
-  std::vector<mesh::Subset::Range> groups;
+std::vector<solid::Span> rows_at_once(const mesh::NodeColumns& body) {
+  std::vector<solid::Span> groups;
   std::int64_t nodes = 0;
   for (int r = 0; r < body.n_rows(); ++r) {
     const int of_row = body.row(r).count;
@@ -86,7 +86,7 @@ mesh::Subset interface_nodes_in(const mesh::Mesh& mesh, const mesh::Subset& colu
   // There each node has its own column; it is asked for each rank.
   if (mesh.is_interface()) return columns.below(static_cast<int>(std::ssize(mesh.interface_nodes)));
   const mesh::NodeColumns of_nodes(mesh);
-  std::vector<mesh::Subset::Range> ranges;
+  std::vector<solid::Span> ranges;
   for (int k = 0; k < std::ssize(mesh.interface_nodes); ++k) {
     if (!columns.has(of_nodes.column_of(mesh.interface_nodes[static_cast<std::size_t>(k)]))) continue;
     if (!ranges.empty() && ranges.back().end == k)
@@ -468,7 +468,7 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
   // In rows [first, end) of a body those of a subdomain's own columns.
   const auto for_own_nodes = [&](const mesh::NodeColumns& columns, int subdomain, auto&& f) {
     const auto own = partition().own(subdomain);
-    for (int r = chunk.first_row; r < chunk.end_row; ++r) f(columns.nodes(r, {own.begin, own.end}));
+    for (int r = chunk.first_row; r < chunk.end_row; ++r) f(columns.nodes(r, own));
   };
   std::vector<double> own;
   for_own_nodes(stepper_->bodies()[body].columns(), processes_.rank(), [&](const auto& nodes) {

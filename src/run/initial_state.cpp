@@ -129,7 +129,7 @@ std::vector<motion::Probe> probes_among_columns(const input::Case& config, const
     const double column = std::clamp(place.x_m / grid.spacing_m, 0.0, static_cast<double>(grid.columns));
     const int begin = std::max(static_cast<int>(column) - beside, 0);
     const int end = std::min(static_cast<int>(column) + beside + 2, grid.stride());
-    std::vector<mesh::Subset::Range> ranges = {{begin, end}};
+    std::vector<mesh::Span> ranges = {{begin, end}};
     if (interface.period_m > 0 && (begin == 0 || end == grid.stride()))
       ranges = {{0, 2 * beside}, {grid.stride() - 2 * beside, grid.stride()}};
     const mesh::Subset columns(ranges);

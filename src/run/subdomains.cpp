@@ -89,7 +89,7 @@ void require_divisible(const input::Case& config, const Processes& processes) {
 
 IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh::Mesh& interface,
                                           const std::vector<motion::BodySteps>& steps, solid::Span columns) {
-  const mesh::Subset all({{columns.begin, columns.end}});
+  const mesh::Subset all({columns});
   Columns some(config, all, interface.grid.stride(), columns, steps, [](std::span<double>) {});
   const auto contact =
       input::contact_model(config, interface_x_m(interface), motion::interface_nodes_in(interface, all));
