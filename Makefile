@@ -30,7 +30,7 @@ PROGRAM := $(BUILD)/slipfront
 # Whether warnings are errors: ON in continuous integration, whose compilers are known.
 WERROR ?= OFF
 
-.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy tidy-recent hostile report-trial fuzz sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -251,23 +251,12 @@ lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/mypy
 
-TIDY ?= (src|papers|verification)
-SINCE ?= 2 days ago
-
-# In a folder of its own: clang cannot read what gcc has precompiled, and each file has to name what it uses.
-define CLANG_TIDY
-cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF
-run-clang-tidy-14 -quiet $(addprefix -extra-arg=,-Wno-unknown-warning-option $(2)) -p build/tidy $(1) > build/tidy.log 2>&1 || { grep -E '(error|warning): ' build/tidy.log | sort -u; exit 1; }
-@echo "clang-tidy: no findings"
-endef
-
-tidy: packages lint-packages  ## clang-tidy over the program's sources, or TIDY=src/ROOM alone; fails at any finding
-	$(call CLANG_TIDY,'^$(CURDIR)/$(TIDY)/.*')
-
-# The analyser follows paths through a function up to this many states, instead of 225,000: half the time.
-SHORT_PATHS := -Xclang -analyzer-config -Xclang max-nodes=20000
-tidy-recent: packages lint-packages  ## the same, less deep, over what the commits since SINCE="2 days ago" have changed
-	$(call CLANG_TIDY,$$(scripts/changed-sources '$(SINCE)'),$(SHORT_PATHS))
+# In a folder of its own: clang cannot read what gcc has precompiled.
+tidy: packages lint-packages $(VENV)/.installed  ## clang-tidy over the program's sources, or MODULES=motion alone
+	@cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF -D SLIPFRONT_TESTS=OFF -D SLIPFRONT_PYTHON=ON \
+	  -D Python_EXECUTABLE=$(abspath $(PYTHON))
+	@cmake --build build/tidy --target slipfront_version
+	@scripts/tidy build/tidy $(MODULES)
 
 hostile: ready-to-test  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
 	PYTHONPATH=tests $(PYTHON) -m hostile $(PROGRAM)

@@ -9,7 +9,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::block {
 
 namespace {
 
@@ -207,7 +207,7 @@ void draw(const StickSlip& s, Outcome& outcome) {
 
 }  // namespace
 
-Outcome block(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   single_event(effort, outcome);
   const StickSlip stick_slip(effort == Effort::full ? 1000 : 250);
@@ -217,4 +217,4 @@ Outcome block(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::block

@@ -15,11 +15,10 @@
 #include "verification/problems.hpp"
 #include "verification/scattering.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::bonded_waves {
 
 namespace {
 
-using Complex = std::complex<double>;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double width_m = 0.1;  ///< one wavelength along the bond
 constexpr double k_x = 2 * std::numbers::pi / width_m;
@@ -262,7 +261,8 @@ std::array<Compliance, 2> joins(const motion::Stepper& stepper, const Pair& pair
   for (int b = 0; b < 2; ++b) {
     const auto& body = stepper.bodies()[b];
     const auto thinning_m = [&](Kind kind) {
-      return h_m * thinning_of_join(speed_m_per_s(pair.bodies[b], kind) * step_s(body) / h_m, body.period());
+      return h_m * subcycling::thinning_of_join(speed_m_per_s(pair.bodies[b], kind) * step_s(body) / h_m,
+                                                body.period());
     };
     lines[b] = {(time.interface_rows + 0.5) * h_m,
                 -thinning_m(Kind::shear) / solid::shear_modulus_Pa(pair.bodies[b]),
@@ -381,7 +381,7 @@ struct Convergence {
 
 }  // namespace
 
-Outcome bonded_waves(Effort effort) {
+Outcome verify(Effort effort) {
   const bool full = effort == Effort::full;
   Outcome outcome;
   Chart errors{
@@ -440,4 +440,4 @@ Outcome bonded_waves(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::bonded_waves

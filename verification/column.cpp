@@ -10,7 +10,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::column {
 
 namespace {
 
@@ -140,7 +140,7 @@ void compare(const Column& column, const Case& c, Outcome& outcome, Chart& rate)
 
 }  // namespace
 
-Outcome column(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const Column column(effort == Effort::quick ? 0.4 : 0.8);
   Chart rate{.x_label = "t c_S / (2 H)", .y_label = "slip rate (m/s)"};
@@ -149,4 +149,4 @@ Outcome column(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::column

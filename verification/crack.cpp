@@ -11,7 +11,7 @@
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::crack {
 
 namespace {
 
@@ -322,7 +322,7 @@ void slow_growth_and_arrest(bool full, Outcome& outcome) {
 
 }  // namespace
 
-Outcome crack(Effort effort) {
+Outcome verify(Effort effort) {
   const bool full = effort == Effort::full;
   Outcome outcome;
   growth_of_a_long_crack(full, outcome);
@@ -330,4 +330,4 @@ Outcome crack(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::crack

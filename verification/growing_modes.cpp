@@ -12,7 +12,7 @@
 #include "verification/problems.hpp"
 #include "verification/sliding.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::growing_modes {
 
 namespace {
 
@@ -108,7 +108,7 @@ Curve errors(const Response& response, Outcome& outcome) {
 
 }  // namespace
 
-Outcome growing_modes(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   RateCharts charts("friction coefficient", "growth rate / (k c_S)", "phase speed / c_S");
   Chart error{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
@@ -121,4 +121,4 @@ Outcome growing_modes(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::growing_modes

@@ -13,7 +13,7 @@
 #include "verification/problems.hpp"
 #include "verification/sliding.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::growing_modes_of_two {
 
 namespace {
 
@@ -116,7 +116,7 @@ Curve errors(const Pair& pair, Outcome& outcome) {
 
 }  // namespace
 
-Outcome growing_modes_of_two(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   RateCharts charts("friction coefficient", "growth rate / (k c_S)", "phase speed / c_S");
   charts.growth.log_y = true;
@@ -130,4 +130,4 @@ Outcome growing_modes_of_two(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::growing_modes_of_two

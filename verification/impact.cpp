@@ -10,7 +10,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::impact {
 
 namespace {
 
@@ -185,7 +185,7 @@ Curve pulled(ContactAlgorithm algorithm, int n_elements, double& worst_imbalance
 
 }  // namespace
 
-Outcome impact(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   constexpr std::array algorithms = {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector};
   for (const auto algorithm : algorithms)
@@ -226,4 +226,4 @@ Outcome impact(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::impact

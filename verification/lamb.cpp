@@ -11,7 +11,7 @@
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::lamb {
 
 namespace {
 
@@ -123,7 +123,7 @@ Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m) {
 
 }  // namespace
 
-Outcome lamb(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const HalfPlane half_plane(undamped);
   const std::vector<double> sizes_m = effort == Effort::quick ? std::vector{1e-3, 0.5e-3, 0.25e-3}
@@ -180,4 +180,4 @@ Outcome lamb(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::lamb

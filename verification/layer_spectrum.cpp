@@ -15,7 +15,7 @@
 #include "verification/problems.hpp"
 #include "verification/sliding.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::layer_spectrum {
 
 namespace {
 
@@ -100,7 +100,7 @@ RateCurves checked(const Layer& layer, const Law& law, bool full, Outcome& outco
 
 }  // namespace
 
-Outcome layer_spectrum(Effort effort) {
+Outcome verify(Effort effort) {
   const bool full = effort == Effort::full;
   Outcome outcome;
   const Layer layer;
@@ -113,4 +113,4 @@ Outcome layer_spectrum(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::layer_spectrum

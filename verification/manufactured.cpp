@@ -11,7 +11,7 @@
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::manufactured {
 
 namespace {
 
@@ -135,8 +135,8 @@ double shift_by_join(const LayerWave& wave, double h_m, double step_s, const mot
   const double G = solid::shear_modulus_Pa(undamped), P = solid::longitudinal_modulus_Pa(undamped);
   const Eigen::Vector2d stress = wave.stress((stepping.interface_rows + 0.5) * h_m) * wave.coefficient;
   const int n = stepping.interface_substeps;
-  const double join = thinning_of_join(c_S * step_s / h_m, n) * stress(0) * stress(0) / G +
-                      thinning_of_join(c_L * step_s / h_m, n) * stress(1) * stress(1) / P;
+  const double join = subcycling::thinning_of_join(c_S * step_s / h_m, n) * stress(0) * stress(0) / G +
+                      subcycling::thinning_of_join(c_L * step_s / h_m, n) * stress(1) * stress(1) / P;
   double inertia = 0;
   constexpr int n_points = 1000;
   for (int i = 0; i < n_points; ++i) {
@@ -227,7 +227,7 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
 
 }  // namespace
 
-Outcome manufactured(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const std::vector<int> columns =
       effort == Effort::quick ? std::vector{32, 64, 128} : std::vector{32, 64, 128, 256};
@@ -274,4 +274,4 @@ Outcome manufactured(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::manufactured

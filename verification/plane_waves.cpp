@@ -10,7 +10,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::plane_waves {
 
 namespace {
 
@@ -69,7 +69,7 @@ class Column {
 
 }  // namespace
 
-Outcome plane_waves(Effort) {
+Outcome verify(Effort) {
   Outcome outcome;
   Chart chart{.x_label = "k h", .y_label = "phase velocity / wave speed"};
   for (const Wave wave : {Wave{false, solid::longitudinal_speed_m_per_s(undamped)},
@@ -119,4 +119,4 @@ Outcome plane_waves(Effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::plane_waves

@@ -3,28 +3,32 @@
 
 #include "verification/verification.hpp"
 
-/// The problems, a file each.
+/// The problems, each in its file and namespace, so that all of them can be compiled together.
 namespace slipfront::verification {
 
-Outcome plane_waves(Effort effort);
-Outcome manufactured(Effort effort);
-Outcome rayleigh_wave(Effort effort);
-Outcome lamb(Effort effort);
-Outcome column(Effort effort);
-Outcome time_reversal(Effort effort);
-Outcome subcycling(Effort effort);
+// clang-format off
+namespace plane_waves { Outcome verify(Effort effort); }
+namespace manufactured { Outcome verify(Effort effort); }
+namespace rayleigh_wave { Outcome verify(Effort effort); }
+namespace lamb { Outcome verify(Effort effort); }
+namespace column { Outcome verify(Effort effort); }
+namespace time_reversal { Outcome verify(Effort effort); }
+namespace subcycling {
+Outcome verify(Effort effort);
 /// The join between a sub-cycled layer and the other cells acts as if the cell above it were thinner by this
 /// share, for changes of stress since the start: verification/subcycling.md.
 /// @param courant_number  c dt/h of the longer step
 double thinning_of_join(double courant_number, int substeps);
-Outcome symmetry(Effort effort);
-Outcome growing_modes(Effort effort);
-Outcome growing_modes_of_two(Effort effort);
-Outcome slip_patch(Effort effort);
-Outcome crack(Effort effort);
-Outcome layer_spectrum(Effort effort);
-Outcome impact(Effort effort);
-Outcome block(Effort effort);
-Outcome bonded_waves(Effort effort);
+}
+namespace symmetry { Outcome verify(Effort effort); }
+namespace growing_modes { Outcome verify(Effort effort); }
+namespace growing_modes_of_two { Outcome verify(Effort effort); }
+namespace slip_patch { Outcome verify(Effort effort); }
+namespace crack { Outcome verify(Effort effort); }
+namespace layer_spectrum { Outcome verify(Effort effort); }
+namespace impact { Outcome verify(Effort effort); }
+namespace block { Outcome verify(Effort effort); }
+namespace bonded_waves { Outcome verify(Effort effort); }
+// clang-format on
 
 }  // namespace slipfront::verification

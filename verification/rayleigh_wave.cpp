@@ -11,7 +11,7 @@
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::rayleigh_wave {
 
 namespace {
 
@@ -152,7 +152,7 @@ void check_speeds(const std::vector<double>& kh, const std::vector<double>& spee
 
 }  // namespace
 
-Outcome rayleigh_wave(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const RayleighWave wave;
   const std::vector<int> per_wavelength =
@@ -176,4 +176,4 @@ Outcome rayleigh_wave(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::rayleigh_wave

@@ -7,8 +7,6 @@ namespace slipfront::verification {
 
 namespace {
 
-using Complex = std::complex<double>;
-
 /// Displacement and stress of a wave of amplitude 1 at the bond.
 struct AtBond {
   Complex u_x, u_y, sigma_xy, sigma_yy;

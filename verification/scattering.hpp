@@ -10,22 +10,23 @@
 /// motion::Body: the one below is upside down. verification/bonded_waves.md.
 namespace slipfront::verification {
 
+using Complex = std::complex<double>;
+
 enum class Kind { longitudinal, shear };
 inline constexpr std::array kinds = {Kind::longitudinal, Kind::shear};
 
 double speed_m_per_s(const solid::Material& material, Kind kind);
 
 /// k_y of a wave exp(i (k_x x + k_y y - omega t)) that leaves the bond; imaginary where it clings to it.
-std::complex<double> leaving_k_y(const solid::Material& material, Kind kind, double k_x,
-                                 double omega_rad_per_s);
+Complex leaving_k_y(const solid::Material& material, Kind kind, double k_x, double omega_rad_per_s);
 
 /// Amplitudes over that of the incident wave, each with the polarisation (k_x, k_y) c/omega or (-k_y, k_x)
 /// c/omega: [body, above first][kind].
-using Scattered = std::array<std::array<std::complex<double>, 2>, 2>;
-inline std::complex<double> of(const Scattered& a, int body, Kind kind) {
+using Scattered = std::array<std::array<Complex, 2>, 2>;
+inline Complex of(const Scattered& a, int body, Kind kind) {
   return a[body][static_cast<std::size_t>(kind)];
 }
-inline std::complex<double>& of(Scattered& a, int body, Kind kind) {
+inline Complex& of(Scattered& a, int body, Kind kind) {
   return a[body][static_cast<std::size_t>(kind)];
 }
 

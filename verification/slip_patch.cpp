@@ -9,7 +9,7 @@
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::slip_patch {
 
 namespace {
 
@@ -145,7 +145,7 @@ void check_limit(const MeshesPart& meshes, const EdgesPart& edges, Outcome& outc
 
 }  // namespace
 
-Outcome slip_patch(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   Chart profile = profile_in_theory();
   EdgesPart edges(outcome);
@@ -163,4 +163,4 @@ Outcome slip_patch(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::slip_patch

@@ -8,7 +8,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::subcycling {
 
 namespace {
 
@@ -76,7 +76,7 @@ double thinning_of_join(double courant_number, int substeps) {
   return sum;
 }
 
-Outcome subcycling(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const int n_half_periods = effort == Effort::quick ? 20 : 60;
   constexpr int rows = 100, layer_rows = 4, substeps = 18;
@@ -107,4 +107,4 @@ Outcome subcycling(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::subcycling

@@ -12,7 +12,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::symmetry {
 
 namespace {
 
@@ -83,7 +83,7 @@ Run run(const mesh::Mesh& mesh, const solid::Material& material, bool mirrored, 
 
 }  // namespace
 
-Outcome symmetry(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const solid::Material material;
   const solid::CellCoordinates square = {0, 0, 1, 0, 1, 1, 0, 1},
@@ -134,4 +134,4 @@ Outcome symmetry(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::symmetry

@@ -10,7 +10,7 @@
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
-namespace slipfront::verification {
+namespace slipfront::verification::time_reversal {
 
 namespace {
 
@@ -125,7 +125,7 @@ void check(const Journey& journey, const Setting& setting, double rest_m, int n_
 
 }  // namespace
 
-Outcome time_reversal(Effort effort) {
+Outcome verify(Effort effort) {
   Outcome outcome;
   const auto mesh = mesh::make_plate(
       {.width_m = width_m, .height_m = height_m, .element_size_m = h_m, .corner = mesh::Corner::none});
@@ -145,4 +145,4 @@ Outcome time_reversal(Effort effort) {
   return outcome;
 }
 
-}  // namespace slipfront::verification
+}  // namespace slipfront::verification::time_reversal

@@ -57,13 +57,13 @@ PressureChange pressure_change(std::span<const Outcome> events) {
       if (std::isfinite(p.p_r_Pa))
         (m.front->direction > 0 ? along : against).push_back(p.p_r_Pa / p.p_s_Pa - 1);
   const auto median = [](std::vector<double>& values) {
-    return values.empty() ? fronts::undefined : fronts::median(values);
+    return values.empty() ? nan : fronts::median(values);
   };
   return {median(along), median(against)};
 }
 
 double fastest_over_c_L(const Outcome& o) {
-  double most = fronts::undefined;
+  double most = nan;
   for (const auto& front : o.fronts)
     for (const auto& p : front.points)
       if (counts(o, front, p) && !(p.v_tip_m_per_s <= most * o.speeds.c_L))

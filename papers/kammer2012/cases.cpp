@@ -78,8 +78,6 @@ using interface::EventKind;
 
 const std::vector<EventKind> all_events = {EventKind::spontaneous, EventKind::left, EventKind::right};
 const std::vector<EventKind> triggered_events = {EventKind::left, EventKind::right};
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-
 /// A study over the values of a key.
 struct Sweep {
   const char *name, *key, *why;
@@ -156,8 +154,8 @@ Study corner_study() {
   const auto add = [&](std::string value, double number, const Change& change) {
     corner.points.push_back(make_point(std::move(value), number, false, all_events, change));
   };
-  add("relief", no_number, [](input::Case&) {});
-  add("none", no_number, [](input::Case& c) { c.plate.corner = mesh::Corner::none; });
+  add("relief", nan, [](input::Case&) {});
+  add("none", nan, [](input::Case& c) { c.plate.corner = mesh::Corner::none; });
   for (const double radius : {2e-3, 5e-3, 10e-3})
     add(fmt::format("fillet_{:g}mm", radius * 1e3), radius, [&](input::Case& c) {
       c.plate.corner = mesh::Corner::fillet;
@@ -168,8 +166,8 @@ Study corner_study() {
 
 Study top_study() {
   Study top{"top", "loading.top_during_tilt", "top edge held or free along x while it is tilted", {}};
-  top.points.push_back(make_point("held", no_number, false, all_events, [](input::Case&) {}));
-  top.points.push_back(make_point("free", no_number, false, all_events, [](input::Case& c) {
+  top.points.push_back(make_point("held", nan, false, all_events, [](input::Case&) {}));
+  top.points.push_back(make_point("free", nan, false, all_events, [](input::Case& c) {
     c.loading.top_during_tilt = statics::TopEdge::free;
   }));
   return top;
@@ -218,7 +216,7 @@ Study loading_method_study() {
   for (const auto& [word, value] :
        {std::pair{"direct", statics::LoadingMethod::direct}, {"ramp", statics::LoadingMethod::ramp}})
     method.points.push_back(
-        make_point(word, no_number, false, {EventKind::spontaneous}, [m = value](input::Case& c) {
+        make_point(word, nan, false, {EventKind::spontaneous}, [m = value](input::Case& c) {
           c.plate.element_size_m = width_m / 100;
           c.loading.method = m;
         }));

@@ -319,16 +319,16 @@ class Possible {
 
 double figure(const std::vector<Claim>& claims, const char* id, const char* name) {
   const auto claim = std::ranges::find(claims, id, &Claim::id);
-  if (claim == claims.end()) return fronts::undefined;
+  if (claim == claims.end()) return nan;
   const auto found = std::ranges::find(claim->figures, name, &Figure::name);
-  return found == claim->figures.end() ? fronts::undefined : found->value;
+  return found == claim->figures.end() ? nan : found->value;
 }
 
 double distance_from_paper(const fronts::ExponentialFit& fit) {
   const PaperFit paper;
   const auto units = [](const fronts::Estimate& ours, double theirs) {
     const double interval = theirs > ours.value ? ours.high - ours.value : ours.value - ours.low;
-    return interval > 0 ? std::abs(theirs - ours.value) / interval : fronts::undefined;
+    return interval > 0 ? std::abs(theirs - ours.value) / interval : nan;
   };
   return std::max({units(fit.a, paper.a), units(fit.b, paper.b), units(fit.c, paper.c)});
 }
@@ -363,11 +363,11 @@ SampleOutcome judge(const std::vector<OpenChoice>& choices, const Sample& sample
   const auto main = collapse_without_tails(main_fronts(three));
   o.share_in_band = main.share_in_paper_band;
   if (main.fitted) o.fit = main.fit;
-  o.distance = main.fitted ? distance_from_paper(main.fit) : fronts::undefined;
+  o.distance = main.fitted ? distance_from_paper(main.fit) : nan;
   o.spread_at_energy_rise = main.energy_rise.fronts.median_relative;
   o.spread_at_dynamic_ratio = main.dynamic_ratio.fronts.median_relative;
   o.spread_at_static_ratio = main.static_ratio.fronts.median_relative;
-  o.difference_of_kinds = fronts::undefined;
+  o.difference_of_kinds = nan;
   return o;
 }
 
@@ -447,7 +447,7 @@ double OpenChoice::at(double share) const {
     case Between::logarithmic:
       return low * std::pow(high / low, share);
   }
-  return fronts::undefined;
+  return nan;
 }
 
 double OpenChoice::share_of(double value) const {
@@ -462,7 +462,7 @@ double OpenChoice::share_of(double value) const {
     case Between::logarithmic:
       return std::log(value / low) / std::log(high / low);
   }
-  return fronts::undefined;
+  return nan;
 }
 
 std::string OpenChoice::text(double value) const {
@@ -581,7 +581,7 @@ std::vector<Evidence> evidence(const OpenChoicesResult& result) {
       std::vector<double> values;
       for (const auto* o : list)
         if (std::isfinite(o->*member)) values.push_back(o->*member);
-      if (values.empty()) return {fronts::undefined, fronts::undefined, fronts::undefined};
+      if (values.empty()) return {nan, nan, nan};
       return {std::ranges::min(values), fronts::median(values), std::ranges::max(values)};
     };
     Evidence e{.name = name,

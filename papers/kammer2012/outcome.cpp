@@ -22,10 +22,10 @@ Outcome make_outcome(const std::string& name, const run::Result& result, const r
   o.contact_to_m = o.inside_to_m + result.config.loading.edge_margin_m;
   o.peak_x_m = initial.common.peak_x_m;
   o.critical_shear_m = initial.critical_shear_m;
-  o.ramp_critical_shear_m = initial.ramp ? initial.ramp->spontaneous.shear_m : fronts::undefined;
+  o.ramp_critical_shear_m = initial.ramp ? initial.ramp->spontaneous.shear_m : nan;
   o.ramp_onsets = initial.ramp ? initial.ramp->record.n_onsets() : 0;
 
-  o.first_onset_x_m = fronts::undefined;
+  o.first_onset_x_m = nan;
   double first_s = std::numeric_limits<double>::infinity();
   for (const auto& onset : result.event.record.onsets) {
     const double x = result.event.record.x_m[onset.node];
@@ -77,7 +77,7 @@ double criterion_value(const fronts::FrontPoint& point, Criterion criterion) {
     case Criterion::energy_rise:
       return fronts::relative_energy_rise(point);
   }
-  return fronts::undefined;
+  return nan;
 }
 
 bool in_tail(const fronts::Front& front, const fronts::FrontPoint& point) {
@@ -145,9 +145,8 @@ Collapse collapse(std::span<const Outcome* const> outcomes, bool without_tails) 
       n_inside += series.x[k] >= 0 && std::abs(series.y[k] - paper(series.x[k])) <= paper.band;
     }
   }
-  result.share_in_paper_band = result.n_points > 0
-                                   ? static_cast<double>(n_inside) / static_cast<double>(result.n_points)
-                                   : fronts::undefined;
+  result.share_in_paper_band =
+      result.n_points > 0 ? static_cast<double>(n_inside) / static_cast<double>(result.n_points) : nan;
   if (n_usable >= 10) {
     result.fit = fronts::fit_exponential(energy);
     result.fitted = true;
@@ -184,7 +183,7 @@ SpeedChange speed_change(const Outcome& run, const Outcome& reference) {
   change.n_points = changes.size();
   change.median = fronts::median(changes);
   change.median_absolute = fronts::median(sizes);
-  change.largest = sizes.empty() ? fronts::undefined : std::ranges::max(sizes);
+  change.largest = sizes.empty() ? nan : std::ranges::max(sizes);
   return change;
 }
 

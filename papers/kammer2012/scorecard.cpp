@@ -30,7 +30,7 @@ std::string share(double part, double whole) {
 
 /// Highest speed of a front over c_L and where; zero without points.
 struct Peak {
-  double v_over_c_L = 0, x_m = fronts::undefined;
+  double v_over_c_L = 0, x_m = nan;
 };
 Peak peak_speed(const Outcome& o, const Front* front) {
   Peak peak;
@@ -51,10 +51,10 @@ double longest_stretch_m(const Outcome& o, double leave_out,
                          const std::function<bool(const FrontPoint&)>& condition) {
   double longest = 0;
   for (const auto& front : o.fronts) {
-    double begin = fronts::undefined;
+    double begin = nan;
     for (const auto& p : front.points) {
       const bool in = counts(o, front, p, leave_out) && std::isfinite(p.v_tip_m_per_s) && condition(p);
-      if (!in) begin = fronts::undefined;
+      if (!in) begin = nan;
       if (in && std::isnan(begin)) begin = p.x_m;
       if (in) longest = std::max(longest, std::abs(p.x_m - begin));
     }
@@ -63,7 +63,7 @@ double longest_stretch_m(const Outcome& o, double leave_out,
 }
 
 double speed_ratio_correlation(const Outcome& o, const Front* front) {
-  if (front == nullptr) return fronts::undefined;
+  if (front == nullptr) return nan;
   std::vector<double> x, y;
   for (const auto* p : speed_points(o, *front)) {
     x.push_back(p->t_s_Pa / p->p_s_Pa);
@@ -318,8 +318,8 @@ class Scorecard {
         {{"left", left, "c_L"},
          {"spontaneous", spontaneous, "c_L"},
          {"right", right, "c_L"},
-         {"left/spontaneous", spontaneous > 0 ? 100 * left / spontaneous : fronts::undefined, "%"},
-         {"left/right", right > 0 ? 100 * left / right : fronts::undefined, "%"}},
+         {"left/spontaneous", spontaneous > 0 ? 100 * left / spontaneous : nan, "%"},
+         {"left/right", right > 0 ? 100 * left / right : nan, "%"}},
         left > 0 && left <= most_left_over_others * spontaneous && left <= most_left_over_others * right,
         fmt::format("ratio of maxima to each at most {}; {:g} mm next to spontaneous nucleation, trigger "
                     "zones and margins left out",
@@ -497,7 +497,7 @@ class Scorecard {
         outside == 0
             ? "no points outside"
             : fmt::format("{} of {} points outside the band", percent(double(near_end) / outside), outside),
-        {{"share", outside > 0 ? 100.0 * near_end / outside : fronts::undefined, "%"}},
+        {{"share", outside > 0 ? 100.0 * near_end / outside : nan, "%"}},
         outside == 0 || near_end >= wanted_share_near_end * outside, how);
   }
 
@@ -783,8 +783,7 @@ void add_variation(std::vector<Claim>& claims, const Variation& variation, std::
     ClaimVariation result{variation.name, variation.key, variation.value, other->measured, other->holds, {}};
     for (const auto& figure : claim.figures) {
       const auto same = std::ranges::find(other->figures, figure.name, &Figure::name);
-      result.differences.push_back(same == other->figures.end() ? fronts::undefined
-                                                                : std::abs(same->value - figure.value));
+      result.differences.push_back(same == other->figures.end() ? nan : std::abs(same->value - figure.value));
     }
     claim.variations.push_back(std::move(result));
   }

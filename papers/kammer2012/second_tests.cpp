@@ -216,9 +216,9 @@ Claim trend_of_crack_share(const Reproduction& runs, std::span<const Claim> firs
 /// Relative drop of V_tip from one front to another at the same nodes: medians over parts of the stretch that
 /// both cover. NaN where a part has no node at which both have a speed.
 struct Drops {
-  double initiation = fronts::undefined;  ///< the first initiation_m
-  double middle = fronts::undefined;      ///< the middle third
-  double arrest = fronts::undefined;      ///< the last arrest_m before the slower front's end
+  double initiation = nan;  ///< the first initiation_m
+  double middle = nan;      ///< the middle third
+  double arrest = nan;      ///< the last arrest_m before the slower front's end
 };
 
 /// @pre both run in one direction, on one mesh

@@ -42,10 +42,12 @@ class StateArchive {
   virtual ~StateArchive() = default;
 
   virtual bool is_loading() const = 0;
+  /// Between ranks of one program: plain types need no `serialize`.
+  virtual bool is_message() const { return false; }
   /// Writes n bytes, or reads them.
   virtual void bytes(void* data, std::size_t n) = 0;
   /// Refuses a length that what is left to read cannot hold.
-  virtual void require(std::uint64_t count) const = 0;
+  virtual void require(std::uint64_t /*count*/) const {}
 
   template <class... T>
   void operator()(T&&... members) {
@@ -78,8 +80,8 @@ class StateArchive {
       bytes(&byte, 1);
       require_possible(byte <= 1, "flags");
       value = byte != 0;
-    } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
-      bytes(&value, sizeof(value));
+    } else if constexpr (is_plain<T>) {
+      bytes_of(&value, 1);
     } else {
       value.serialize(*this);
     }
@@ -92,10 +94,20 @@ class StateArchive {
       require(count);
       values.resize(count);
     }
-    if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
-      bytes(values.data(), sizeof(T) * values.size());
+    if constexpr (is_plain<T>)
+      bytes_of(values.data(), values.size());
     else
       for (auto& value : values) member(value);
+  }
+  template <class T>
+  static constexpr bool is_plain =
+      std::is_trivially_copyable_v<T> && !requires(T & value, StateArchive& archive) {
+    value.serialize(archive);
+  };
+  template <class T>
+  void bytes_of(T* values, std::size_t n) {
+    SLIPFRONT_ASSERT(std::is_scalar_v<T> || is_message(), "a file holds members one by one");
+    bytes(values, sizeof(T) * n);
   }
 };
 

@@ -4,13 +4,10 @@
 
 namespace slipfront::cli {
 
-const input::CaseFile& CaseArguments::case_file() const {
-  if (!case_file_) {
-    std::vector<input::Override> overrides;
-    for (const std::string& text : set) overrides.push_back(input::parse_override(text));
-    case_file_.emplace(file, overrides);
-  }
-  return *case_file_;
+input::CaseFile CaseArguments::read() const {
+  std::vector<input::Override> overrides;
+  for (const std::string& text : set) overrides.push_back(input::parse_override(text));
+  return input::CaseFile(file, overrides);
 }
 
 std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command) {

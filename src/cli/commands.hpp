@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,27 +30,11 @@ void add_page(CLI::App& app, const Program& program);
 std::string version_text();
 
 /// The arguments of every subcommand that works on a case: CASE.toml [--set key=value]...
-class CaseArguments {
- public:
+struct CaseArguments {
   std::string file;
   std::vector<std::string> set;
 
-  const input::Case& read() const { return case_file().config(); }
-  /// See input::CaseFile.
-  const std::vector<std::string>& notes() const { return case_file().notes(); }
-  /// Does work on the case; its errors get their place in the file.
-  template <class Work>
-  auto placing_errors(Work&& work) const {
-    try {
-      return work();
-    } catch (const UserError& error) {
-      throw case_file().with_place(error);
-    }
-  }
-
- private:
-  const input::CaseFile& case_file() const;
-  mutable std::optional<input::CaseFile> case_file_;  ///< once read
+  input::CaseFile read() const;
 };
 
 /// Adds them to a subcommand; filled when the command line is parsed. The subcommand's callback must keep the

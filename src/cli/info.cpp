@@ -198,8 +198,9 @@ void add_shared(const run::Info::Shared& shared, Listing& list) {
 }
 
 void print_info(const CaseArguments& arguments, const std::optional<int>& n_processes) {
-  const input::Case& config = arguments.read();
-  const auto info = arguments.placing_errors([&] { return run::info(config, n_processes); });
+  const auto given = arguments.read();
+  const auto& config = given.config();
+  const auto info = given.placing_errors([&] { return run::info(config, n_processes); });
   Listing list;
   if (!config.title.empty()) list.add("title", files::one_line(config.title));
   add_wave_speeds(info, list);
@@ -215,7 +216,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
-  for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);
+  for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);
   for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);
   print_output(list.text);
 }

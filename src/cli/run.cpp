@@ -145,25 +145,26 @@ run::SessionHooks hooks(bool quiet) {
   return hooks;
 }
 
-run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
-                           results::ResultFolder& folder, const std::optional<input::Case>& config) {
+run::Finished run_or_go_on(const RunArguments& options, results::ResultFolder& folder,
+                           const std::optional<input::CaseFile>& given) {
   const auto hooks = cli::hooks(options.quiet);
-  if (options.restart) return run::resume(folder, config ? &*config : nullptr, options.session, hooks);
-  return arguments.placing_errors([&] { return run::run_into(folder, *config, options.session, hooks); });
+  if (options.restart) return run::resume(folder, given ? &given->config() : nullptr, options.session, hooks);
+  return given->placing_errors(
+      [&] { return run::run_into(folder, given->config(), options.session, hooks); });
 }
 
 void run_case(const CaseArguments& arguments, RunArguments& options) {
-  std::optional<input::Case> config;
-  if (!arguments.file.empty()) config = arguments.read();
-  const bool compares_nothing = !config && !arguments.set.empty();
-  if (options.restart ? options.dir || options.overwrite || compares_nothing : !config)
+  std::optional<input::CaseFile> given;
+  if (!arguments.file.empty()) given = arguments.read();
+  const bool compares_nothing = !given && !arguments.set.empty();
+  if (options.restart ? options.dir || options.overwrite || compares_nothing : !given)
     throw UserError(
         "slipfront: run takes CASE, or --restart DIR, perhaps with CASE to compare; see slipfront run "
         "--help");
   options.take_folder_of(arguments.file);
   results::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
-    if (config) run::require_same_case(*config, folder.dir());
+    if (given) run::require_same_case(given->config(), folder.dir());
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }
@@ -171,17 +172,17 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
   if (!options.restart) {
     folder.require_empty(options.overwrite);
     // What the machine cannot hold is refused before anything is written.
-    arguments.placing_errors([&] { run::require_fit(*config, folder.dir(), processes); });
+    given->placing_errors([&] { run::require_fit(given->config(), folder.dir(), processes); });
   }
-  if (processes.size() > 1 && config)
-    arguments.placing_errors([&] { run::require_divisible(*config, processes); });
+  if (processes.size() > 1 && given)
+    given->placing_errors([&] { run::require_divisible(given->config(), processes); });
   catch_interrupts();
   try {
-    const auto [result, initial] = run_or_go_on(arguments, options, folder, config);
+    const auto [result, initial] = run_or_go_on(options, folder, given);
     run::require_came_to_end(result, folder);
     if (options.quiet) return;
-    if (config)
-      for (const auto& note : arguments.notes()) print("note: {}\n", note);
+    if (given)
+      for (const auto& note : given->notes()) print("note: {}\n", note);
     print_summary(result, initial, folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;

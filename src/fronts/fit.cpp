@@ -9,11 +9,10 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::fronts {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Limits of c times the range of s = sqrt(x), and the number of values tried between them.
 constexpr double c_range_low = 0.01;

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::fronts {
 namespace {
@@ -77,7 +77,6 @@ record::SlipRecord record_from_history(const record::History& history, double th
   // Nodes are already in order, so a stable sort puts simultaneous events from left to right.
   std::ranges::stable_sort(found, {}, [](const Found& f) { return f.onset.time_s; });
   std::ranges::stable_sort(record.stops, {}, &record::Stop::time_s);
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Found& f : found) {
     record.onsets.push_back(f.onset);
     for (int offset = -halo; offset <= halo; ++offset) {

@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
 #include "fronts/trace.hpp"
 
 namespace slipfront::fronts {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A tip this near to a node, in element lengths, is at the node: l* and positions are rounded numbers (0.67
 // mm stands for an element of 0.6667 mm).
@@ -129,27 +128,27 @@ double time_at(const Passage& tip, const Bracket& at) {
 }
 
 /// The first and the last point of a path that a length of it lies between.
-struct Points {
+struct Ends {
   std::size_t first = 0, last = 0;
 };
 
 /// A tip near to a node is at the node.
-Points points_around(const Bracket& from, const Bracket& to) {
+Ends ends_around(const Bracket& from, const Bracket& to) {
   return {from.fraction > 1.0 - position_tolerance ? from.ahead : from.behind,
           to.fraction < position_tolerance ? to.behind : to.ahead};
 }
 
-bool is_any_driven(const record::SlipRecord& record, const Path& path, const Points& points,
+bool is_any_driven(const record::SlipRecord& record, const Path& path, const Ends& ends,
                    const FrontOptions& options) {
   const auto begin = path.nodes.begin();
-  return std::any_of(begin + static_cast<std::ptrdiff_t>(points.first),
-                     begin + static_cast<std::ptrdiff_t>(points.last) + 1,
+  return std::any_of(begin + static_cast<std::ptrdiff_t>(ends.first),
+                     begin + static_cast<std::ptrdiff_t>(ends.last) + 1,
                      [&](int node) { return is_driven(options, record.x_m[node]); });
 }
 
 /// Time in which information passes from one point to the other at the earliest.
-double min_time_s(const record::SlipRecord& record, const Path& path, const Points& points) {
-  const int n_elements = std::abs(path.nodes[points.last] - path.nodes[points.first]);
+double min_time_s(const record::SlipRecord& record, const Path& path, const Ends& ends) {
+  const int n_elements = std::abs(path.nodes[ends.last] - path.nodes[ends.first]);
   return std::max(n_elements - 1, 1) * record.resolution_s;
 }
 
@@ -162,14 +161,13 @@ void set_speed(FrontPoint& point, const record::SlipRecord& record, const Path& 
   point.speed_kind = is_driven(options, point.x_m) ? SpeedKind::triggered : SpeedKind::path_end;
   if (from_m < 0.0 || to_m > tip.run_m.back()) return;
   const Bracket from = bracket(tip, from_m), to = bracket(tip, to_m);
-  const Points points = points_around(from, to);
-  if (is_any_driven(record, path, points, options)) {
+  const Ends ends = ends_around(from, to);
+  if (is_any_driven(record, path, ends, options)) {
     point.speed_kind = SpeedKind::triggered;
     return;
   }
   const double time_s = time_at(tip, to) - time_at(tip, from);
-  const bool is_resolved =
-      tip.time_s[points.last] - tip.time_s[points.first] >= min_time_s(record, path, points);
+  const bool is_resolved = tip.time_s[ends.last] - tip.time_s[ends.first] >= min_time_s(record, path, ends);
   point.speed_kind = is_resolved && time_s > 0.0 ? SpeedKind::front : SpeedKind::simultaneous;
   if (point.speed_kind == SpeedKind::front) point.v_tip_m_per_s = l_star_m / time_s;
 }
@@ -177,7 +175,7 @@ void set_speed(FrontPoint& point, const record::SlipRecord& record, const Path& 
 /// Tractions of a node at an onset; undefined beyond the halo.
 record::Traction traction_at(const record::SlipRecord& record, std::size_t onset, int node) {
   const int offset = node - record.onsets[onset].node;
-  if (std::abs(offset) > record.halo) return {undefined, undefined};
+  if (std::abs(offset) > record.halo) return {nan, nan};
   const int index = offset + record.halo;
   return record.around_onset(onset)[static_cast<std::size_t>(index)];
 }
@@ -188,7 +186,7 @@ record::Traction traction_ahead(const record::SlipRecord& record, const Passage&
   Bracket at = bracket(tip, run_m);
   if (at.fraction < position_tolerance) at.fraction = 0.0;
   if (at.fraction > 1.0 - position_tolerance) at.fraction = 1.0;
-  if (time_at(tip, at) >= reaches_node_s) return {undefined, undefined};  // a jump
+  if (time_at(tip, at) >= reaches_node_s) return {nan, nan};  // a jump
   const record::Traction ahead = traction_at(record, tip.onset[at.ahead], node);
   if (at.fraction == 1.0) return ahead;
   const record::Traction behind = traction_at(record, tip.onset[at.behind], node);

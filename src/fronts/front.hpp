@@ -3,16 +3,14 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string_view>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/per_node.hpp"
 #include "record/record.hpp"
 
 namespace slipfront::fronts {
-
-inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// What of the solid the energy density needs.
 struct Elasticity {
@@ -49,11 +47,10 @@ struct FrontOptions {
   double pulse_share = 0.2;  ///< pulse-like below it
   PerNode mu_s = 0;          ///< static friction coefficient, for U_r = U(p_r, mu_s p_r)
   Elasticity elasticity;
-  double exclude_left_m =
-      -std::numeric_limits<double>::infinity();  ///< no t_d, p_d at x below it (trigger zone)
-  double exclude_right_m = std::numeric_limits<double>::infinity();  ///< ... nor above it
-  double exclude_from_m = std::numeric_limits<double>::infinity();   ///< ... nor from here (nucleation patch)
-  double exclude_to_m = -std::numeric_limits<double>::infinity();    ///< ... to here
+  double exclude_left_m = -infinity;  ///< no t_d, p_d at x below it (trigger zone)
+  double exclude_right_m = infinity;  ///< ... nor above it
+  double exclude_from_m = infinity;   ///< ... nor from here (nucleation patch)
+  double exclude_to_m = -infinity;    ///< ... to here
   /// The trigger zone, or the nucleation patch itself: no v_tip there, both ends included.
   std::vector<Zone> driven;
   double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
@@ -104,15 +101,15 @@ struct FrontPoint {
   std::int32_t node = 0;
   double x_m = 0;
   double onset_s = 0;
-  double v_tip_m_per_s = undefined;               ///< speed over l*, positive in the front's own direction
-  double t_s_Pa = undefined, p_s_Pa = undefined;  ///< before the event
-  double t_d_Pa = undefined, p_d_Pa = undefined;  ///< when the front is l* short of x
-  double t_r_Pa = undefined, p_r_Pa = undefined;  ///< at the onset
-  double U_s_J_per_m3 = undefined;                ///< U(p_d, t_d)
-  double U_r_J_per_m3 = undefined;                ///< U(p_r, mu_s p_r)
-  double slipping_share = undefined;              ///< slipping length behind the tip over the distance run
-  bool accelerating = false;                      ///< v_tip rises along the path, see find_fronts
-  SpeedKind speed_kind = SpeedKind::path_end;     ///< v_tip is defined where it is `front`, nowhere else
+  double v_tip_m_per_s = nan;                  ///< speed over l*, positive in the front's own direction
+  double t_s_Pa = nan, p_s_Pa = nan;           ///< before the event
+  double t_d_Pa = nan, p_d_Pa = nan;           ///< when the front is l* short of x
+  double t_r_Pa = nan, p_r_Pa = nan;           ///< at the onset
+  double U_s_J_per_m3 = nan;                   ///< U(p_d, t_d)
+  double U_r_J_per_m3 = nan;                   ///< U(p_r, mu_s p_r)
+  double slipping_share = nan;                 ///< slipping length behind the tip over the distance run
+  bool accelerating = false;                   ///< v_tip rises along the path, see find_fronts
+  SpeedKind speed_kind = SpeedKind::path_end;  ///< v_tip is defined where it is `front`, nowhere else
 };
 
 /// A path of onsets, continuous in x, in one direction.

@@ -101,7 +101,7 @@ std::vector<double> local_slopes(std::span<const double> s, std::span<const doub
   };
 
   std::optional<SlopeSums> sums;
-  std::vector<double> slopes(s.size(), undefined);
+  std::vector<double> slopes(s.size(), nan);
   for (std::size_t k = 0; k < s.size(); ++k) {
     const std::ptrdiff_t begin =
         std::max<std::ptrdiff_t>(0, std::min(index_from(s[k] - half_width), index_from(s[k]) - side_points));

@@ -17,9 +17,9 @@ double relative_energy_rise(const FrontPoint& point);
 
 /// Speeds of a front's points, those nearer to its start than a given distance left out.
 struct SpeedSummary {
-  double mean_m_per_s = undefined;  ///< over the points with a defined speed; NaN if there are none
-  double max_m_per_s = undefined;
-  double x_of_max_m = undefined;
+  double mean_m_per_s = nan;  ///< over the points with a defined speed; NaN if there are none
+  double max_m_per_s = nan;
+  double x_of_max_m = nan;
   int n_points = 0;
 };
 SpeedSummary speed_summary(const Front& front, double leave_out_m);

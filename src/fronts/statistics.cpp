@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "fronts/fit.hpp"
 
 namespace slipfront::fronts {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -39,7 +37,7 @@ Binned binned(std::span<const Series> series, int bins) {
   const auto usable = [](const Series& one, std::size_t k) {
     return std::isfinite(one.x[k]) && std::isfinite(one.y[k]);
   };
-  double low = std::numeric_limits<double>::infinity();
+  double low = infinity;
   double high = -low;
   for (const Series& one : series) {
     SLIPFRONT_ASSERT(one.x.size() == one.y.size(), "a series has one y for each x");

@@ -5,17 +5,16 @@
 #include <cmath>
 #include <deque>
 #include <functional>
-#include <limits>
 #include <queue>
 #include <set>
 #include <utility>
+
+#include "base/numbers.hpp"
 
 namespace slipfront::fronts {
 namespace {
 
 constexpr double rounding = 1e-6;  // of positions
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A path with the node and time of its last advance.
 struct Tip {
   Path path;

@@ -11,11 +11,10 @@
 #include <variant>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::input {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Range above(double min) {
   return {min, infinity, true, true};

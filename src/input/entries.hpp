@@ -2,13 +2,13 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/message.hpp"
+#include "base/numbers.hpp"
 #include "input/case.hpp"
 #include "input/document.hpp"
 
@@ -19,8 +19,8 @@ enum class Kind { number, integer, flag, text, word, numbers, texts };
 
 /// Interval of allowed numbers; an open end at infinity asks for a finite value.
 struct Range {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
+  double min = -infinity;
+  double max = infinity;
   bool min_open = true;
   bool max_open = true;
 };

@@ -175,11 +175,12 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
   return laws;
 }
 
-interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m) {
+interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m,
+                                      const mesh::Subset& places) {
   interface::ContactModel model {
     config.friction, config.regularisation, config.contact
   };
-  if (auto laws = friction_at(config, x_m); !laws.empty())
+  if (auto laws = places.of(friction_at(config, x_m)); !laws.empty())
     model.of_nodes = interface::NodeLaws(std::move(laws));
   return model;
 }

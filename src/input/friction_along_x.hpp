@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "input/case.hpp"
+#include "mesh/node_columns.hpp"
 
 namespace slipfront::input {
 
@@ -19,8 +20,9 @@ FrictionTable read_friction_table(const std::filesystem::path& file, const inter
 /// parameters are not allowed.
 std::vector<interface::FrictionLaw> friction_at(const Case& config, const std::vector<double>& x_m);
 
-/// Contact and friction of a case with interface nodes at x_m.
+/// Contact and friction of some of the interface nodes at x_m.
 /// @throws UserError as friction_at
-interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m);
+interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m,
+                                      const mesh::Subset& places = {});
 
 }  // namespace slipfront::input

@@ -567,11 +567,7 @@ void CaseFile::require_a_key() const {
 void CaseFile::read(const std::filesystem::path& folder, const std::vector<Override>& overrides) {
   apply(overrides, document_);
   config_ = case_of(document_, name_, notes_);
-  try {
-    read_tables(folder, config_);
-  } catch (const UserError& error) {
-    throw with_place(error);
-  }
+  placing_errors([&] { read_tables(folder, config_); });
 }
 
 Case read_case(const std::filesystem::path& file, const std::vector<Override>& overrides) {

@@ -45,6 +45,15 @@ class CaseFile {
   /// ..." or "FILE: ...". Of the error's keys that counts which an override sets, else the first that the
   /// file sets.
   UserError with_place(const UserError& error) const;
+  /// Does work on the case; its errors get their place.
+  template <class Work>
+  auto placing_errors(Work&& work) const {
+    try {
+      return work();
+    } catch (const UserError& error) {
+      throw with_place(error);
+    }
+  }
 
  private:
   void require_a_key() const;

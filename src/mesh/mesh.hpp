@@ -14,6 +14,11 @@ using Node = std::int32_t;
 /// Four-node cells with their node numbers counterclockwise.
 using Cell = std::array<Node, 4>;
 
+/// Numbers [begin, end).
+struct Span {
+  int begin = 0, end = 0;
+};
+
 /// The logical grid under the node numbers of a block of squares: node (column i, row j) is
 /// first + j * (columns + 1) + i.
 ///

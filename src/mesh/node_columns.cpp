@@ -10,7 +10,7 @@
 
 namespace slipfront::mesh {
 
-Subset::Subset(std::vector<Range> ranges) : ranges_(std::move(ranges)) {
+Subset::Subset(std::vector<Span> ranges) : ranges_(std::move(ranges)) {
   for (std::size_t k = 0; k < ranges_.size(); ++k)
     SLIPFRONT_ASSERT(ranges_[k].begin < ranges_[k].end && (k == 0 || ranges_[k - 1].end <= ranges_[k].begin),
                      "ranges ascend");
@@ -23,7 +23,7 @@ int Subset::count() const {
 }
 
 bool Subset::has(int number) const {
-  return ranges_.empty() || std::ranges::any_of(ranges_, [&](const Range& range) {
+  return ranges_.empty() || std::ranges::any_of(ranges_, [&](const Span& range) {
            return number >= range.begin && number < range.end;
          });
 }
@@ -47,7 +47,7 @@ int Subset::number_at(int place) const {
 }
 
 Subset Subset::below(int end) const {
-  std::vector<Range> ranges;
+  std::vector<Span> ranges;
   for (const auto& range : ranges_)
     if (range.begin < end) ranges.push_back({range.begin, std::min(range.end, end)});
   return Subset(std::move(ranges));
@@ -103,14 +103,14 @@ void NodeColumns::add_row(int block, bool is_inner, const Subset& columns) {
     row.first = below.first + below.held.count();
     row.first_global = below.first_global + n_below(below.block, below.is_inner, n_columns_);
   }
-  std::vector<Subset::Range> places;
+  std::vector<Span> places;
   for (const auto& range : columns.ranges())
     places.push_back({n_below(block, is_inner, range.begin), n_below(block, is_inner, range.end)});
   row.held = Subset(std::move(places));
   rows_.push_back(std::move(row));
 }
 
-NodeColumns::Nodes NodeColumns::nodes(int row, Subset::Range columns) const {
+NodeColumns::Nodes NodeColumns::nodes(int row, Span columns) const {
   const auto& [block, is_inner, first, first_global, held] = rows_[row];
   const int begin = n_below(block, is_inner, columns.begin), end = n_below(block, is_inner, columns.end);
   return {first + held.place_of(begin), end - begin};

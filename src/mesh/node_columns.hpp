@@ -13,16 +13,12 @@ namespace slipfront::mesh {
 /// among themselves.
 class Subset {
  public:
-  struct Range {
-    int begin = 0, end = 0;
-  };
-
   /// All numbers, each in its place.
   Subset() = default;
   /// @param ranges  ascending, not empty
-  explicit Subset(std::vector<Range> ranges);
+  explicit Subset(std::vector<Span> ranges);
 
-  const std::vector<Range>& ranges() const { return ranges_; }
+  const std::vector<Span>& ranges() const { return ranges_; }
   int count() const;
   bool has(int number) const;
   /// @pre the whole has it, or the subset its place
@@ -30,9 +26,23 @@ class Subset {
   int number_at(int place) const;
   /// Without the numbers from `end` on.
   Subset below(int end) const;
+  /// Of values of the whole those of its numbers; none of none.
+  template <class T>
+  std::vector<T> of(const std::vector<T>& values) const {
+    if (ranges_.empty() || values.empty()) return values;
+    std::vector<T> some;
+    for (const auto& range : ranges_)
+      some.insert(some.end(), values.begin() + range.begin, values.begin() + range.end);
+    return some;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(ranges_);
+  }
 
  private:
-  std::vector<Range> ranges_;
+  std::vector<Span> ranges_;
 };
 
 /// The columns of a plate's nodes, counted in the smallest squares: node i of a grid row of the k-th block
@@ -66,7 +76,7 @@ class NodeColumns {
   };
   Nodes row(int row) const { return {rows_[row].first, rows_[row].held.count()}; }
   /// A row's nodes in some neighbouring columns of the whole. @pre the mesh holds these
-  Nodes nodes(int row, Subset::Range columns) const;
+  Nodes nodes(int row, Span columns) const;
   int row_of(std::int64_t n) const;
   int column_of(std::int64_t n) const;
   /// The number that a node of the mesh has in the whole, and back. @pre the mesh holds it

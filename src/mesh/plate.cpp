@@ -469,7 +469,7 @@ Mesh make_corners(const Plate& plate, int around) {
     return static_cast<int>(std::ceil(length_m / whole.spacing_m)) + around + 1;
   };
   const int n = whole.stride(), columns = cells(plate.relief_length_m) + 1;
-  std::vector<Subset::Range> sides = {{0, n}};
+  std::vector<Span> sides = {{0, n}};
   if (2 * columns < n) sides = {{0, columns}, {n - columns, n}};
   return Maker(plate, Subset(sides), Rows::some, "plate")
       .make_rows(0, std::min(whole.rows, cells(plate.relief_depth_m)));

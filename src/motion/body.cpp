@@ -37,7 +37,7 @@ BodyMotion motion_of(const BodySource& source) {
   motion.columns = mesh::NodeColumns(source.mesh, part.columns, part.n_columns);
   motion.is_own.resize(source.mesh.n_nodes());
   for (int r = 0; r < motion.columns.n_rows(); ++r) {
-    const auto nodes = motion.columns.nodes(r, {part.own.begin, part.own.end});
+    const auto nodes = motion.columns.nodes(r, part.own);
     const auto begin = static_cast<int>(nodes.first - motion.columns.row(r).first);
     motion.own.push_back({begin, begin + nodes.count});
     for (auto n = nodes.first; n < nodes.end(); ++n) motion.is_own[n] = true;

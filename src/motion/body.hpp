@@ -154,7 +154,7 @@ class Body {
 
 template <class Visit>
 void Body::visit_columns(solid::Span columns, solid::Span rows, bool with_shared, Visit&& visit) {
-  const auto nodes_of_row = [&](int row) { return motion_.columns.nodes(row, {columns.begin, columns.end}); };
+  const auto nodes_of_row = [&](int row) { return motion_.columns.nodes(row, columns); };
   for (int r = rows.begin; r < rows.end; ++r) {
     const auto nodes = nodes_of_row(r);
     const auto n = static_cast<std::size_t>(nodes.count);

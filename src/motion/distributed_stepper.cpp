@@ -15,25 +15,16 @@ namespace slipfront::motion {
 namespace {
 
 solid::Span own_interface_nodes_in(const mesh::Mesh& mesh, solid::Span columns) {
-  const auto places = interface_nodes_in(mesh, mesh::Subset({{columns.begin, columns.end}}));
+  const auto places = interface_nodes_in(mesh, mesh::Subset({columns}));
   SLIPFRONT_ASSERT(places.ranges().size() == 1, "interface nodes in the order of columns");
-  return {places.ranges().front().begin, places.ranges().front().end};
+  return places.ranges().front();
 }
 
-template <class T>
-std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
-  std::vector<T> some;
-  if (values.empty()) return some;
-  for (const auto& range : places.ranges())
-    some.insert(some.end(), values.begin() + range.begin, values.begin() + range.end);
-  return some;
-}
-
-Loads cut(const Loads& loads, const mesh::Subset& places) {
-  auto some = loads;
-  for (auto* values : {&some.prestress_t_Pa, &some.prestress_p_Pa, &some.trigger_force_N_per_m, &some.intact})
-    *values = cut(*values, places);
-  return some;
+Loads cut(Loads loads, const mesh::Subset& places) {
+  for (auto* values :
+       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
+    *values = places.of(*values);
+  return loads;
 }
 
 /// Some columns of a field over a whole body, or none of an empty one.
@@ -47,20 +38,14 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
         const auto nodes = body.nodes(r, range);
         values.insert(values.end(), component->begin() + nodes.first, component->begin() + nodes.end());
       }
-    to.put(values);
+    MessageArchive archive(to);
+    archive(values);
   }
 }
 
-solid::Field take_field(MessageBuffer& from) {
-  solid::Field field;
-  field.x = from.take_all<double>();
-  field.y = from.take_all<double>();
-  return field;
-}
-
 /// Rows of a body in groups of a chunk's nodes, at most, or single ones.
-std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
-  std::vector<mesh::Subset::Range> groups;
+std::vector<solid::Span> rows_at_once(const mesh::NodeColumns& body) {
+  std::vector<solid::Span> groups;
   std::int64_t nodes = 0;
   for (int r = 0; r < body.n_rows(); ++r) {
     const int of_row = body.row(r).count;
@@ -101,7 +86,7 @@ mesh::Subset interface_nodes_in(const mesh::Mesh& mesh, const mesh::Subset& colu
   // There each node has its own column; it is asked for each rank.
   if (mesh.is_interface()) return columns.below(static_cast<int>(std::ssize(mesh.interface_nodes)));
   const mesh::NodeColumns of_nodes(mesh);
-  std::vector<mesh::Subset::Range> ranges;
+  std::vector<solid::Span> ranges;
   for (int k = 0; k < std::ssize(mesh.interface_nodes); ++k) {
     if (!columns.has(of_nodes.column_of(mesh.interface_nodes[static_cast<std::size_t>(k)]))) continue;
     if (!ranges.empty() && ranges.back().end == k)
@@ -119,29 +104,6 @@ Decomposition decomposition_of(Partition partition, std::span<const mesh::Mesh* 
     whole.interface_nodes.push_back(interface_nodes_in(*bodies.front(), whole.partition.all(k)));
     whole.own_interface_nodes.push_back(own_interface_nodes_in(*bodies.front(), whole.partition.own(k)));
   }
-  return whole;
-}
-
-void Decomposition::put(MessageBuffer& to) const {
-  to.put(partition.first).put(partition.halo).put(partition.columns_per_step);
-  to.put(partition.steps_per_exchange).put(partition.is_ring);
-  to.put(blocks.size());
-  for (const auto& of_body : blocks) to.put(of_body);
-  for (const auto& places : interface_nodes) to.put(places.ranges());
-  to.put(own_interface_nodes);
-}
-
-Decomposition Decomposition::take(MessageBuffer& from) {
-  Decomposition whole;
-  whole.partition.first = from.take_all<int>();
-  whole.partition.halo = from.take<int>();
-  whole.partition.columns_per_step = from.take<int>();
-  whole.partition.steps_per_exchange = from.take<int>();
-  whole.partition.is_ring = from.take<bool>();
-  for (auto n = from.take<std::size_t>(); n > 0; --n) whole.blocks.push_back(from.take_all<mesh::Grid>());
-  for (int n = whole.partition.n_subdomains(); n > 0; --n)
-    whole.interface_nodes.emplace_back(from.take_all<mesh::Subset::Range>());
-  whole.own_interface_nodes = from.take_all<solid::Span>();
   return whole;
 }
 
@@ -202,7 +164,7 @@ DistributedStepper::DistributedStepper(Processes& processes, Decomposition whole
 
 DistributedStepper::~DistributedStepper() = default;
 
-void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, const Loads& loads) {
+void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, Loads loads) {
   halo_->finish();
   auto fields = processes_.scatter([&](int subdomain) {
     MessageBuffer buffer;
@@ -214,13 +176,12 @@ void DistributedStepper::start(const statics::Equilibrium& e, double top_speed_m
     return buffer;
   });
   statics::Equilibrium own;
-  for (auto* field : {&own.u_m, &own.u_per_shear, &own.below_u_m, &own.below_u_per_shear})
-    *field = take_field(fields);
+  for (auto* field : own.displacements()) *field = unpacked<solid::Field>(fields);
   fields = {};
-  own.tractions.t_s_Pa = cut(e.tractions.t_s_Pa, own_places());
-  own.tractions.p_s_Pa = cut(e.tractions.p_s_Pa, own_places());
-  own.contact = cut(e.contact, own_places());
-  stepper_->start(own, top_speed_m_per_s, cut(loads, own_places()));
+  own.tractions.t_s_Pa = own_places().of(e.tractions.t_s_Pa);
+  own.tractions.p_s_Pa = own_places().of(e.tractions.p_s_Pa);
+  own.contact = own_places().of(e.contact);
+  stepper_->start(own, top_speed_m_per_s, cut(std::move(loads), own_places()));
   own = {};
   return_freed_memory();
   halo_->renew();
@@ -257,8 +218,8 @@ void DistributedStepper::set_probes(std::vector<Probe> probes) {
 
 std::vector<double> DistributedStepper::gathered(const std::vector<double>& own) const {
   std::vector<double> report;
-  for (auto& of_rank : processes_.all_gather(MessageBuffer().put(own))) {
-    const auto values = of_rank.take_all<double>();
+  for (auto& of_rank : processes_.all_gather(packed(own))) {
+    const auto values = unpacked<std::vector<double>>(of_rank);
     report.insert(report.end(), values.begin(), values.end());
   }
   std::vector<double> values(report.size());
@@ -343,8 +304,9 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
 
 void DistributedStepper::make_finder(const SlipFinder& whole) {
   const auto& known = whole.memory();
-  SlipFinder::Memory memory{known.time_s, cut(known.t_Pa, own_places()), cut(known.p_Pa, own_places()),
-                            cut(known.strength_Pa, own_places()), cut(known.slipping, own_places())};
+  const auto& places = own_places();
+  SlipFinder::Memory memory{known.time_s, places.of(known.t_Pa), places.of(known.p_Pa),
+                            places.of(known.strength_Pa), places.of(known.slipping)};
   const auto own = stepper_->bodies().front().interface_side().own;
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   whole.halo(), whole.creep_m_per_s());
@@ -422,13 +384,14 @@ void DistributedStepper::add_tractions_of_others(SlipUpdates& seen, std::size_t 
   SLIPFRONT_ASSERT(seen.around.size() == first_around, "tractions around each onset");
   if (gaps.empty()) return;  // on all ranks
   MessageBuffer own;
+  MessageArchive archive(own);
   for (const auto& gap : gaps) {
     if (gap.owner != rank()) continue;
     const int place = own_places().place_of(gap.node);
-    own.put(traction_between(log_.at(gap.update, place), log_.at(gap.update + 1, place), gap.share));
+    archive(record::between(log_.at(gap.update, place), log_.at(gap.update + 1, place), gap.share));
   }
   auto of_ranks = processes_.all_gather(own);
-  for (const auto& gap : gaps) seen.around[gap.at] = of_ranks[gap.owner].take<record::Traction>();
+  for (const auto& gap : gaps) seen.around[gap.at] = unpacked<record::Traction>(of_ranks[gap.owner]);
 }
 
 std::vector<double> DistributedStepper::probed_u_m() const {
@@ -505,7 +468,7 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
   // In rows [first, end) of a body those of a subdomain's own columns.
   const auto for_own_nodes = [&](const mesh::NodeColumns& columns, int subdomain, auto&& f) {
     const auto own = partition().own(subdomain);
-    for (int r = chunk.first_row; r < chunk.end_row; ++r) f(columns.nodes(r, {own.begin, own.end}));
+    for (int r = chunk.first_row; r < chunk.end_row; ++r) f(columns.nodes(r, own));
   };
   std::vector<double> own;
   for_own_nodes(stepper_->bodies()[body].columns(), processes_.rank(), [&](const auto& nodes) {
@@ -514,8 +477,8 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
   });
   const auto all = nodes_of(chunk, columns_);
   std::vector<double> values(processes_.is_root() ? static_cast<std::size_t>(all.count) : 0);
-  processes_.gather(std::move(MessageBuffer().put(own)), [&](int subdomain, MessageBuffer& buffer) {
-    const auto of_subdomain = buffer.take_all<double>();
+  processes_.gather(packed(own), [&](int subdomain, MessageBuffer& buffer) {
+    const auto of_subdomain = unpacked<std::vector<double>>(buffer);
     auto from = of_subdomain.begin();
     for_own_nodes(columns_[body], subdomain, [&](const auto& nodes) {
       std::copy_n(from, nodes.count, values.begin() + (nodes.first - all.first));
@@ -527,10 +490,9 @@ std::vector<double> DistributedStepper::snapshot_chunk(int k) const {
 
 void DistributedStepper::keep(const std::function<void(const StateByNode& chunk)>& take) {
   halo_->finish();
-  MessageBuffer own;
-  motion::keep(stepper_->state(own_places()), stepper_->step()).put(own);
+  auto own = packed(motion::keep(stepper_->state(own_places()), stepper_->step()));
   processes_.gather(std::move(own), [&](int subdomain, MessageBuffer& buffer) {
-    auto chunk = StateByNode::take(buffer);
+    auto chunk = unpacked<StateByNode>(buffer);
     buffer = {};
     chunk.step = step_;
     chunk.number = subdomain;
@@ -545,26 +507,21 @@ void DistributedStepper::restore(const Loads& loads, const std::function<StateBy
   StateRestorer restorer(stepper_->state(own_places()));
   for (bool is_last = false; !is_last;) {
     StateByNode chunk;
-    is_last = processes_
-                  .from_root([&](MessageBuffer& to) {
-                    chunk = next();
-                    chunk.require_of(columns_);
-                    to.put(chunk.is_last());
-                  })
-                  .take<bool>();
+    is_last = unpacked<bool>(processes_.from_root([&](MessageBuffer& to) {
+      chunk = next();
+      chunk.require_of(columns_);
+      to.append(packed(chunk.is_last()));
+    }));
     auto part = processes_.scatter([&](int subdomain) {
       // As many subdomains as kept them go on with their own sums; of another number the first one has them
       // all.
       const bool has_sums =
           chunk.n_chunks == partition().n_subdomains() ? subdomain == chunk.number : subdomain == 0;
-      MessageBuffer buffer;
-      chunk
-          .in(partition().all(subdomain), whole_.interface_nodes[static_cast<std::size_t>(subdomain)],
-              columns_, has_sums)
-          .put(buffer);
-      return buffer;
+      return packed(chunk.in(partition().all(subdomain),
+                             whole_.interface_nodes[static_cast<std::size_t>(subdomain)], columns_,
+                             has_sums));
     });
-    processes_.together([&] { restorer.add(StateByNode::take(part)); });
+    processes_.together([&] { restorer.add(unpacked<StateByNode>(part)); });
   }
   processes_.together([&] { stepper_->update_after_restore(restorer.finish()); });
   return_freed_memory();

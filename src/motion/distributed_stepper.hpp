@@ -29,8 +29,10 @@ struct Decomposition {
   std::vector<mesh::Subset> interface_nodes;
   std::vector<solid::Span> own_interface_nodes;
 
-  void put(MessageBuffer& to) const;
-  static Decomposition take(MessageBuffer& from);
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(partition, blocks, interface_nodes, own_interface_nodes);
+  }
 };
 /// @param bodies  the whole meshes, or those of their interfaces
 Decomposition decomposition_of(Partition partition, std::span<const mesh::Mesh* const> bodies);
@@ -101,9 +103,9 @@ class DistributedStepper final : public TimeStepper {
   DistributedStepper(const DistributedStepper&) = delete;
   DistributedStepper& operator=(const DistributedStepper&) = delete;
 
-  /// See Stepper::start. @param equilibrium  the whole interface; on rank 0 with the whole displacements
-  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, const Loads& loads);
-  void set_probes(std::vector<Probe> probes);
+  /// @param equilibrium  the whole interface; on rank 0 with the whole displacements
+  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads) override;
+  void set_probes(std::vector<Probe> probes) override;
 
   double stable_step_s() const override { return stepper_->stable_step_s(); }
   double step_s() const override { return stepper_->step_s(); }

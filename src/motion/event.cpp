@@ -2,7 +2,6 @@
 #include "motion/event.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/error.hpp"
@@ -20,7 +19,7 @@ namespace {
 constexpr std::int64_t monitor_interval = 50;
 
 std::int64_t steps_of(const TimeStepping& time, double step_s) {
-  const double all_steps = std::ceil(time.end_s / step_s * (1 - 1e-12));
+  const double all_steps = steps_to(time.end_s, step_s);
   if (all_steps > 1e12)
     throw UserError("{} = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", Key("time.end_s"),
                     time.end_s, all_steps, step_s);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace slipfront::motion {
@@ -12,6 +13,11 @@ struct Now {
   double step_s = 0;
   double time_s() const { return static_cast<double>(step) * step_s; }
 };
+
+/// Steps from time 0 to the first that is at time_s or later, but for rounding.
+inline double steps_to(double time_s, double step_s) {
+  return std::ceil(time_s / step_s * (1 - 1e-12));
+}
 
 /// More steps than any run takes.
 inline constexpr std::int64_t many_steps = 10'000'000'000'000;

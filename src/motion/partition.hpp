@@ -36,6 +36,10 @@ struct Partition {
   int halo_above(int subdomain) const {
     return n_subdomains() > 1 && (subdomain + 1 < n_subdomains() || is_ring) ? halo : 0;
   }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(first, halo, columns_per_step, steps_per_exchange, is_ring);
+  }
 };
 
 /// Columns that the error at a subdomain's edge crosses within a step. An impulse carries it over the cells

@@ -25,8 +25,7 @@ class PlainStepper : public TimeStepper {
   PlainStepper(const PlainStepper&) = delete;
   PlainStepper& operator=(const PlainStepper&) = delete;
 
-  /// See Stepper::start.
-  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {});
+  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {}) override;
 
   double stable_step_s() const override { return stable_step_s_; }
   double step_s() const override { return step_s_; }
@@ -36,7 +35,7 @@ class PlainStepper : public TimeStepper {
   std::int64_t n_nodes() const override;
   std::int64_t step() const override { return step_; }
 
-  void set_probes(std::vector<Probe> probes) { probes_ = std::move(probes); }
+  void set_probes(std::vector<Probe> probes) override { probes_ = std::move(probes); }
   const std::vector<Probe>& probes() const override { return probes_; }
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;

@@ -22,6 +22,10 @@ namespace slipfront::motion {
 struct BodySteps {
   double stable_step_s = 0;
   std::vector<int> multiples;  ///< see step_multiples
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(stable_step_s, multiples);
+  }
 };
 
 /// Data of the whole body that a subdomain, some columns of its mesh, needs.

@@ -90,7 +90,7 @@ void SlipFinder::locate_onset(SlipChange& onset, double time_s, const interface:
       at = {std::nan(""), std::nan("")};
       continue;
     }
-    at = traction_between({memory_.t_Pa[i], memory_.p_Pa[i]}, {state.t_Pa[i], state.p_Pa[i]}, part);
+    at = record::between({memory_.t_Pa[i], memory_.p_Pa[i]}, {state.t_Pa[i], state.p_Pa[i]}, part);
     // At the node itself the traction rises to the strength, interpolated as the others.
     const double strength = strength_before + part * (strength_now - strength_before);
     if (k == 0) at.t_Pa = std::copysign(strength, state.t_Pa[i]);

@@ -47,12 +47,6 @@ struct SlipUpdate {
   std::vector<record::Traction> around;  ///< at the beginnings among them, [beginnings x (2 halo + 1)]
 };
 
-/// At an onset, from those of the updates before and after it. @param share  see SlipChange
-inline record::Traction traction_between(const record::Traction& before, const record::Traction& after,
-                                         double share) {
-  return {before.t_Pa + share * (after.t_Pa - before.t_Pa), before.p_Pa + share * (after.p_Pa - before.p_Pa)};
-}
-
 /// Finds beginnings and ends of slip between successive contact updates.
 class SlipFinder {
  public:

@@ -102,23 +102,6 @@ void StateByNode::add_entry(const Run& like, std::int64_t key) {
   runs.back().count = 1;
 }
 
-void StateByNode::put(MessageBuffer& to) const {
-  to.reserve(4096 + runs.size() * sizeof(Run) + (values.size() + sums.size()) * sizeof(double));
-  to.put(number).put(n_chunks).put(step).put(runs).put(values).put(sums).put(flags);
-}
-
-StateByNode StateByNode::take(MessageBuffer& from) {
-  StateByNode chunk;
-  chunk.number = from.take<std::int32_t>();
-  chunk.n_chunks = from.take<std::int32_t>();
-  chunk.step = from.take<std::int64_t>();
-  chunk.runs = from.take_all<Run>();
-  chunk.values = from.take_all<double>();
-  chunk.sums = from.take_all<double>();
-  chunk.flags = from.take_all<std::uint8_t>();
-  return chunk;
-}
-
 StateByNode keep(const StateView& state, std::int64_t step, int number, int n_chunks) {
   StateByNode chunk{number, n_chunks, step, {}, {}, {}, {}};
   const auto begin = [&](const StateView::List& list, int of) {

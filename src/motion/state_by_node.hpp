@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "mesh/node_columns.hpp"
-#include "processes/message_buffer.hpp"
 
 namespace slipfront::motion {
 
@@ -109,10 +108,9 @@ struct StateByNode {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(number, n_chunks, step, runs, values, sums, flags);
+    // The largest last: so the memory of a message is asked for once.
+    archive(number, n_chunks, step, runs, sums, flags, values);
   }
-  void put(MessageBuffer& to) const;
-  static StateByNode take(MessageBuffer& from);
 };
 
 /// A chunk of the own entries of a state: of each list the same share.

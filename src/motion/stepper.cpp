@@ -45,10 +45,10 @@ std::vector<Body> make_bodies(std::span<const BodySource> sources, const TimeSte
 }
 
 /// Divides bodies into levels by the sub-step that they share.
-/// @return that of the lowest block of the fastest body
-double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, const TimeStepping& time) {
-  double stable_s = bodies.front().stable_step_s();
-  for (const auto& body : bodies) stable_s = std::min(stable_s, body.stable_step_s());
+/// @param stable_s  the fastest body's
+/// @return the step of its lowest block
+double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, const TimeStepping& time,
+              double stable_s) {
   const double lowest_s = time.step_factor * stable_s;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const int at_once = step_ratio(bodies[b].stable_step_s(), stable_s);
@@ -76,13 +76,10 @@ Stepper::Stepper(const BodySource& above, const BodySource& below, const interfa
 Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
                  const TimeStepping& time, const Execution& execution)
     : bodies_(make_bodies(sources, time)),
-      lowest_step_s_(divide(bodies_, sources, time)),
+      stable_step_s_(std::ranges::min_element(bodies_, {}, &Body::stable_step_s)->stable_step_s()),
+      lowest_step_s_(divide(bodies_, sources, time, stable_step_s_)),
       coupling_(contact, contacts_of(bodies_)) {
-  stable_step_s_ = bodies_.front().stable_step_s();
-  for (const auto& body : bodies_) {
-    stable_step_s_ = std::min(stable_step_s_, body.stable_step_s());
-    substeps_ = std::lcm(substeps_, body.period());
-  }
+  for (const auto& body : bodies_) substeps_ = std::lcm(substeps_, body.period());
   const int lowest_steps = substeps_ / time.interface_substeps;
   step_s_ = lowest_step_s_ * lowest_steps;
   for (const auto& body : bodies_)

@@ -92,16 +92,14 @@ class Stepper : public TimeStepper {
   /// Steps that a thread takes in one sweep through memory.
   int steps_per_sweep() const { return wavefront_->depth(); }
 
-  /// Puts the bodies into an equilibrium, moving with the shear at top_speed_m_per_s, under loads, at time 0.
-  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {});
+  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {}) override;
 
   /// Changes the prescribed tractions of Loads between two steps.
   void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa) {
     coupling_.set_prestress(std::move(t_Pa), std::move(p_Pa));
   }
 
-  /// Looks at the nodes of these probes from now on.
-  void set_probes(std::vector<Probe> probes);
+  void set_probes(std::vector<Probe> probes) override;
   const std::vector<Probe>& probes() const override { return probes_; }
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
@@ -203,9 +201,9 @@ class Stepper : public TimeStepper {
   void advance_band(std::int64_t step, std::size_t band);
 
   std::vector<Body> bodies_;
-  double lowest_step_s_ = 0;
+  double stable_step_s_ = 0, lowest_step_s_ = 0;
   Coupling coupling_;
-  double stable_step_s_ = 0, step_s_ = 0;
+  double step_s_ = 0;
   int substeps_ = 1;  ///< in a step
   int n_bands_ = 1;   ///< of the bodies that lead
   std::unique_ptr<threads::Wavefront> wavefront_;

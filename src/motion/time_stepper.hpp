@@ -69,6 +69,11 @@ class TimeStepper {
  public:
   virtual ~TimeStepper() = default;
 
+  /// Puts the bodies into an equilibrium, moving with the shear at top_speed_m_per_s, under loads, at time 0.
+  virtual void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads) = 0;
+  /// Looks at the nodes of these probes from now on.
+  virtual void set_probes(std::vector<Probe> probes) = 0;
+
   virtual double stable_step_s() const = 0;
   virtual double step_s() const = 0;
   /// time.step_factor of the stable step: that of the lowest block, or of the faster body's.

@@ -5,12 +5,11 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/state.hpp"
 
 namespace slipfront {
 
@@ -22,56 +21,15 @@ class MessageBuffer {
   explicit MessageBuffer(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {}
 
   std::span<const std::byte> bytes() const { return bytes_; }
-
-  template <class T>
-  requires std::is_trivially_copyable_v<T> MessageBuffer& put(const T& value) {
-    return put_bytes(&value, sizeof(T));
-  }
-  template <class T>
-  requires std::is_trivially_copyable_v<T> MessageBuffer& put(std::span<const T> values) {
-    put(static_cast<std::uint64_t>(values.size()));
-    return put_bytes(values.data(), values.size_bytes());
-  }
-  template <class T>
-  requires std::is_trivially_copyable_v<T> MessageBuffer& put(std::span<T> values) {
-    return put(std::span<const T>(values));
-  }
-  template <class T>
-  MessageBuffer& put(const std::vector<T>& values) {
-    return put(std::span<const T>(values));
-  }
-  /// Makes room for so many bytes more.
-  void reserve(std::size_t n) { bytes_.reserve(bytes_.size() + n); }
   /// Appends the unread rest of another buffer.
   MessageBuffer& append(const MessageBuffer& buffer) {
-    return put_bytes(buffer.bytes_.data() + buffer.next_, buffer.bytes_.size() - buffer.next_);
+    put_bytes(buffer.bytes_.data() + buffer.next_, buffer.bytes_.size() - buffer.next_);
+    return *this;
   }
-  MessageBuffer& put(const std::string& text) { return put(std::span<const char>(text)); }
-
-  template <class T>
-  requires std::is_trivially_copyable_v<T> T take() {
-    T value;
-    take_bytes(&value, sizeof(T));
-    return value;
-  }
-  template <class T>
-  requires std::is_trivially_copyable_v<T> std::vector<T> take_all() {
-    const auto count = static_cast<std::size_t>(take<std::uint64_t>());
-    SLIPFRONT_ASSERT(count <= (bytes_.size() - next_) / sizeof(T), "a buffer holds what was written");
-    std::vector<T> values(count);
-    take_bytes(values.data(), count * sizeof(T));
-    return values;
-  }
-  std::string take_text() {
-    const auto text = take_all<char>();
-    return {text.begin(), text.end()};
-  }
-
-  MessageBuffer& put_bytes(const void* from, std::size_t count) {
+  void put_bytes(const void* from, std::size_t count) {
     const auto size = bytes_.size();
     bytes_.resize(size + count);
     if (count > 0) std::memcpy(bytes_.data() + size, from, count);
-    return *this;
   }
   void take_bytes(void* to, std::size_t count) {
     SLIPFRONT_ASSERT(count <= bytes_.size() - next_, "a buffer holds what was written");
@@ -79,9 +37,54 @@ class MessageBuffer {
     next_ += count;
   }
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(bytes_);
+  }
+
  private:
   std::vector<std::byte> bytes_;
   std::size_t next_ = 0;
 };
+
+/// Writes a state to a message, or reads it from there.
+class MessageArchive final : public StateArchive {
+ public:
+  explicit MessageArchive(MessageBuffer& to) : buffer_(to), is_loading_(false) {}
+  static MessageArchive reader(MessageBuffer& from) { return {from, true}; }
+  bool is_loading() const override { return is_loading_; }
+  bool is_message() const override { return true; }
+  void bytes(void* data, std::size_t n) override {
+    if (is_loading_)
+      buffer_.take_bytes(data, n);
+    else
+      buffer_.put_bytes(data, n);
+  }
+
+ private:
+  MessageArchive(MessageBuffer& buffer, bool is_loading) : buffer_(buffer), is_loading_(is_loading) {}
+
+  MessageBuffer& buffer_;
+  bool is_loading_;
+};
+
+/// A message of values.
+template <class... T>
+MessageBuffer packed(const T&... values) {
+  MessageBuffer buffer;
+  MessageArchive archive(buffer);
+  archive(values...);
+  return buffer;
+}
+template <class T>
+T unpacked(MessageBuffer& from) {
+  T value{};
+  MessageArchive::reader(from)(value);
+  return value;
+}
+template <class T>
+T unpacked(MessageBuffer&& from) {
+  return unpacked<T>(from);
+}
 
 }  // namespace slipfront

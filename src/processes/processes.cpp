@@ -20,13 +20,12 @@ MessageBuffer Processes::broadcast(MessageBuffer buffer) {
 
 std::vector<MessageBuffer> Processes::all_gather(const MessageBuffer& own) {
   // Ranks below one in the tree follow it in their numbers.
-  MessageBuffer all;
-  all.put(own.bytes());
+  auto all = packed(own);
   for (const int child : children_in_tree(rank(), size())) all.append(receive(child));
   if (!is_root()) send(parent_in_tree(rank()), all);
   all = broadcast(std::move(all));
   std::vector<MessageBuffer> buffers;
-  for (int k = 0; k < size(); ++k) buffers.emplace_back(all.take_all<std::byte>());
+  for (int k = 0; k < size(); ++k) buffers.push_back(unpacked<MessageBuffer>(all));
   return buffers;
 }
 
@@ -47,19 +46,18 @@ MessageBuffer Processes::scatter(const std::function<MessageBuffer(int rank)>& m
 }
 
 MessageBuffer Processes::from_root(const std::function<void(MessageBuffer& to)>& make) {
-  MessageBuffer made;
+  auto made = packed(true);
   if (is_root()) {
-    made.put(true);
     try {
       make(made);
     } catch (...) {
-      broadcast(std::move(MessageBuffer().put(false)));
+      broadcast(packed(false));
       set_awaited(false);
       throw;
     }
   }
   made = broadcast(std::move(made));
-  if (!made.take<bool>()) throw FailedElsewhere();
+  if (!unpacked<bool>(made)) throw FailedElsewhere();
   return made;
 }
 
@@ -72,14 +70,14 @@ void Processes::together(const std::function<void()>& work) {
     failure = std::current_exception();
     reason = reason_of(error);
   }
-  auto reasons = all_gather(MessageBuffer().put(failure != nullptr).put(reason));
+  auto reasons = all_gather(packed(failure != nullptr, reason));
   for (int other = 0; other < size(); ++other) {
     auto& of_rank = reasons[static_cast<std::size_t>(other)];
-    if (!of_rank.take<bool>()) continue;
+    if (!unpacked<bool>(of_rank)) continue;
     set_awaited(false);
     if (!is_root()) throw FailedElsewhere();
     if (failure != nullptr) std::rethrow_exception(failure);
-    throw ProcessError("rank " + std::to_string(other) + ": " + of_rank.take_text());
+    throw ProcessError("rank " + std::to_string(other) + ": " + unpacked<std::string>(of_rank));
   }
 }
 

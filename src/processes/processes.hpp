@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/state.hpp"
+#include "base/error.hpp"
 #include "processes/message_buffer.hpp"
 
 namespace slipfront {
@@ -86,7 +86,7 @@ class Processes {
   template <class T>
   std::vector<T> all_gather_value(const T& own) {
     std::vector<T> values;
-    for (auto& buffer : all_gather(MessageBuffer().put(own))) values.push_back(buffer.template take<T>());
+    for (auto& buffer : all_gather(packed(own))) values.push_back(unpacked<T>(buffer));
     return values;
   }
   /// Shows rank 0 the buffers of all ranks, one after the other.
@@ -132,42 +132,6 @@ class OneProcess final : public Processes {
   [[noreturn]] void fail(int, const std::string& line) override { throw std::runtime_error(line); }
 };
 OneProcess& one_process();
-
-/// Writes a state to a message, or reads it from there.
-class MessageArchive final : public StateArchive {
- public:
-  explicit MessageArchive(MessageBuffer& to) : buffer_(to), is_loading_(false) {}
-  static MessageArchive reader(MessageBuffer& from) { return {from, true}; }
-  bool is_loading() const override { return is_loading_; }
-  void bytes(void* data, std::size_t n) override {
-    if (is_loading_)
-      buffer_.take_bytes(data, n);
-    else
-      buffer_.put_bytes(data, n);
-  }
-  void require(std::uint64_t /*count*/) const override {}
-
- private:
-  MessageArchive(MessageBuffer& buffer, bool is_loading) : buffer_(buffer), is_loading_(is_loading) {}
-
-  MessageBuffer& buffer_;
-  bool is_loading_;
-};
-
-/// In a message, by their `serialize`.
-template <class... T>
-MessageBuffer packed(const T&... values) {
-  MessageBuffer buffer;
-  MessageArchive archive(buffer);
-  archive(values...);
-  return buffer;
-}
-template <class T>
-T unpacked(MessageBuffer& from) {
-  T value{};
-  MessageArchive::reader(from)(value);
-  return value;
-}
 
 /// Reason of an exception, for other ranks.
 inline std::string reason_of(const std::exception& error) {

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-namespace slipfront::python {
+#include "python/bindings.hpp"
 
-namespace nb = nanobind;
+namespace slipfront::python {
 
 /// Arrays that Python hands in: doubles side by side.
 using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;

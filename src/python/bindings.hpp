@@ -7,12 +7,14 @@
 /// to Python as they are; what makes them convenient there is in python/slipfront.
 namespace slipfront::python {
 
-void bind_errors(nanobind::module_& module);
-void bind_cases(nanobind::module_& module);
-void bind_observers(nanobind::module_& module);
-void bind_compose(nanobind::module_& module);
-void bind_fronts(nanobind::module_& module);
-void bind_fits(nanobind::module_& module);
-void bind_kammer2012(nanobind::module_& module);
+namespace nb = nanobind;
+
+void bind_errors(nb::module_& module);
+void bind_cases(nb::module_& module);
+void bind_observers(nb::module_& module);
+void bind_compose(nb::module_& module);
+void bind_fronts(nb::module_& module);
+void bind_fits(nb::module_& module);
+void bind_kammer2012(nb::module_& module);
 
 }  // namespace slipfront::python

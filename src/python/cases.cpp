@@ -18,12 +18,12 @@
 #include "base/error.hpp"
 #include "input/schema.hpp"
 #include "interface/friction.hpp"
-#include "mesh/plate.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/observers.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
+#include "run/choices.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
 #include "run/session.hpp"
@@ -34,19 +34,8 @@
 namespace slipfront::python {
 namespace {
 
-namespace nb = nanobind;
 using namespace nb::literals;
 namespace fs = std::filesystem;
-
-/// What work on a case throws, with the place in the case that it is about.
-template <class Work>
-auto at_its_place(const input::CaseFile& given, const Work& work) {
-  try {
-    return work();
-  } catch (const UserError& error) {
-    throw given.with_place(error);
-  }
-}
 
 /// A folder that a run of this process works in: the lock of the folder keeps out other processes alone.
 class FolderInUse {
@@ -111,7 +100,7 @@ void run_config(const input::CaseFile& given, const input::Case& config, const f
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   session.folder.require_empty(overwrite);
   session.complete([&] {
-    return at_its_place(given, [&] {
+    return given.placing_errors([&] {
       run::require_fit(config, session.folder.dir());
       return run::run_into(session.folder, config, session.options, session.watcher.hooks());
     });
@@ -159,28 +148,17 @@ void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_e
       [&] { return run::resume(session.folder, nullptr, session.options, session.watcher.hooks()); });
 }
 
-stability::Bodies bodies_of(const input::Case& config) {
-  stability::Bodies bodies = config.material;
-  if (input::has_base_body(config)) bodies.below = input::base_material(config);
-  return bodies;
-}
-
 stability::WellPosedness well_posedness(const input::CaseFile& given, double pressure_Pa,
                                         double element_size_m, double longest_wavelength_m) {
   const auto& config = given.config();
-  return stability::well_posedness(bodies_of(config), config.friction, pressure_Pa, element_size_m,
+  return stability::well_posedness(run::bodies_of(config), config.friction, pressure_Pa, element_size_m,
                                    longest_wavelength_m, config.regularisation);
 }
 
 /// Of the case's material in squares, without its geometry.
 double stable_step_s(const input::CaseFile& given, double element_size_m) {
-  constexpr int squares_on_a_side = 2;  // enough for a mesh; the frequency is that of a separate block
-  mesh::Plate plate;
-  plate.corner = mesh::Corner::none;
-  plate.element_size_m = element_size_m;
-  plate.width_m = plate.height_m = squares_on_a_side * element_size_m;
   const auto& material = given.config().material;
-  return solid::stable_step_s(solid::frequency_bound_rad_per_s(mesh::make_plate(plate), material),
+  return solid::stable_step_s(solid::frequency_of_squares_rad_per_s(element_size_m, material),
                               material.stiffness_damping_s);
 }
 
@@ -322,7 +300,7 @@ void bind_cases(nb::module_& module) {
       .def_prop_ro("static_coefficient",
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
       .def(
-          "info", [](const C& c) { return at_its_place(c, [&] { return run::info(c.config()); }); },
+          "info", [](const C& c) { return c.placing_errors([&] { return run::info(c.config()); }); },
           nb::call_guard<nb::gil_scoped_release>(),
           "What follows from the case; only loads that are forces take its statics.")
       .def("stable_step_s", &stable_step_s, "element_size_m"_a,

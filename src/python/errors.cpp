@@ -9,8 +9,6 @@
 namespace slipfront::python {
 namespace {
 
-namespace nb = nanobind;
-
 /// Raises an exception of slipfront.errors.
 void raise(const char* name, const char* text) {
   const nb::object type = nb::module_::import_("slipfront.errors").attr(name);

@@ -102,7 +102,7 @@ record::SlipRecord record_of(const Values& x_m, const Values& onset_s, double en
     if (std::isfinite(onset_s(node)))
       record.onsets.push_back({static_cast<std::int32_t>(node), onset_s(node)});
   std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
-  record.around.assign(record.onsets.size(), {fronts::undefined, fronts::undefined});
+  record.around.assign(record.onsets.size(), {nan, nan});
   return record;
 }
 

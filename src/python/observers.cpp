@@ -14,8 +14,6 @@
 namespace slipfront::python {
 namespace {
 
-namespace nb = nanobind;
-
 /// The interface at the beginning of a step.
 struct InterfaceState {
   std::int64_t step = 0;
@@ -58,27 +56,25 @@ std::function<motion::Observers()> observers_of(const Functions& functions, Watc
 
 void bind_observers(nb::module_& module) {
   using S = InterfaceState;
-  const auto view = [](std::vector<double> record::History::*member) {
-    return [member](const S& state) {
-      const auto& values = state.row.*member;
-      return Array(values.data(), {values.size()}, nb::find(state));
-    };
-  };
-  nb::class_<S>(
+  nb::class_<S> state(
       module, "InterfaceState",
       "The interface at the beginning of a step. Arrays [nodes] are views that cannot be written to; "
-      "they may be kept.")
-      .def_ro("step", &S::step, "steps done")
+      "they may be kept.");
+  state.def_ro("step", &S::step, "steps done")
       .def_prop_ro(
-          "time_s", [](const S& state) { return state.row.time_s.front(); }, "since the start of the event")
-      .def_prop_ro("x_m", view(&record::History::x_m), "position along the interface from the left edge")
-      .def_prop_ro("slip_m", view(&record::History::slip_m),
-                   "displacement of the plate along x relative to its base, since the start")
-      .def_prop_ro("slip_rate_m_per_s", view(&record::History::slip_rate_m_per_s),
-                   "velocity of the plate along x relative to its base")
-      .def_prop_ro("t_Pa", view(&record::History::t_Pa),
-                   "tangential traction, positive against sliding to +x")
-      .def_prop_ro("p_Pa", view(&record::History::p_Pa), "contact pressure, positive in compression");
+          "time_s", [](const S& of) { return of.row.time_s.front(); }, "since the start of the event");
+  const auto add = [&](const record::HistoryColumn& column) {
+    const std::string about(column.description);
+    state.def_prop_ro(
+        column.name,
+        [member = column.member](const S& of) {
+          const auto& values = of.row.*member;
+          return Array(values.data(), {values.size()}, nb::find(of));
+        },
+        about.substr(0, about.find(", [")).c_str());
+  };
+  add(record::history_place);
+  for (const auto& field : record::history_fields) add(field);
 }
 
 }  // namespace slipfront::python

@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "base/interruption.hpp"
+#include "python/bindings.hpp"
 
 namespace slipfront::python {
 namespace {
-
-namespace nb = nanobind;
 
 /// Taking Python's lock is cheap beside so much work, and nobody waits so long for Ctrl-C.
 constexpr double ask_every_s = 0.05;

@@ -25,7 +25,6 @@ class OutputArchive : public StateArchive {
   ~OutputArchive() override;
   bool is_loading() const override { return false; }
   void bytes(void* data, std::size_t n) override;
-  void require(std::uint64_t /*count*/) const override {}
   /// Writes the checksum, waits until all is on the device and gives the file its name.
   void close();
 

@@ -262,7 +262,7 @@ std::uint64_t place_of(const Layout& layout, const std::string& name, std::size_
 
 }  // namespace
 
-std::uint64_t SnapshotRows::head_bytes_of(const Origin& origin, std::size_t n_snapshots) {
+std::uint64_t SnapshotRows::head_bytes() const {
   constexpr std::size_t data_sets_of_steps = 7 + tensor_values_per_cell;
   return results::head_bytes(origin, sizeof(std::int64_t) * data_sets_of_steps * n_snapshots);
 }

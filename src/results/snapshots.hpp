@@ -16,14 +16,14 @@ namespace slipfront::results {
 
 /// Rows of a fields.vtkhdf (rows.hpp): the time, u_x, u_y, v_x and v_y [nodes].
 struct SnapshotRows {
-  std::uint64_t head_bytes = 0;
+  Origin origin = {};
+  std::size_t n_snapshots = 0;  ///< for which the head has room
   std::size_t n_nodes = 0;
   /// Nodes of the left edge of a periodic plate, and of the right one, which are given their motion.
   std::vector<std::pair<std::size_t, std::size_t>> seam = {};
 
   std::size_t row_values() const { return 1 + motion::n_motion_components * n_nodes; }
-  /// With room for so many snapshots.
-  static std::uint64_t head_bytes_of(const Origin& origin, std::size_t n_snapshots);
+  std::uint64_t head_bytes() const;
 };
 /// The pairs of a mesh whose nodes are numbered from `first` on.
 std::vector<std::pair<std::size_t, std::size_t>> seam(const mesh::Mesh& mesh, std::size_t first = 0);

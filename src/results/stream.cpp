@@ -31,7 +31,7 @@ ResultStream::ResultStream(std::filesystem::path dir, RunFiles files, const Exte
   history_.emplace(dir_ / history_file, files_.history.head_bytes(), extents.history);
   if (files_.probes) probes_.emplace(dir_ / probe_file, files_.probes->head_bytes(), extents.probes);
   if (extents.snapshots.bytes > 0)
-    snapshots_.emplace(dir_ / snapshot_file, files_.snapshots.head_bytes, extents.snapshots);
+    snapshots_.emplace(dir_ / snapshot_file, files_.snapshots.head_bytes(), extents.snapshots);
   else
     files::remove_file(dir_ / snapshot_file);
 }
@@ -58,12 +58,12 @@ void ResultStream::hand_over() {
 }
 
 void ResultStream::begin_snapshot(double time_s) {
-  if (!snapshots_) snapshots_.emplace(dir_ / snapshot_file, files_.snapshots.head_bytes);
+  if (!snapshots_) snapshots_.emplace(dir_ / snapshot_file, files_.snapshots.head_bytes());
   writer_.put(sizeof(double), [this, time_s] { snapshots_->write(std::span(&time_s, 1)); });
 }
 
 void ResultStream::put_motion(std::vector<double> values, std::size_t place) {
-  const auto& [head_bytes, n_nodes, seam] = files_.snapshots;
+  const auto& [origin, n_snapshots, n_nodes, seam] = files_.snapshots;
   for (std::size_t first = 0; first < motion::n_motion_components * n_nodes; first += n_nodes) {
     auto pair = std::ranges::lower_bound(seam, place - std::min(place, first), {},
                                          &std::pair<std::size_t, std::size_t>::second);
@@ -111,7 +111,7 @@ ResultStream::Extents ResultStream::keep() {
 void ResultStream::finish() {
   const auto extents = keep();
   require_unchanged(dir_ / history_file, files_.history.head_bytes(), extents.history);
-  if (snapshots_) require_unchanged(dir_ / snapshot_file, files_.snapshots.head_bytes, extents.snapshots);
+  if (snapshots_) require_unchanged(dir_ / snapshot_file, files_.snapshots.head_bytes(), extents.snapshots);
   if (probes_) require_unchanged(dir_ / probe_file, files_.probes->head_bytes(), extents.probes);
   results::finish(dir_ / history_file, files_.history);
   if (probes_) results::finish(dir_ / probe_file, *files_.probes);

@@ -73,10 +73,10 @@ void write(const Order& order, const input::Case& config, const std::function<Sn
 bool all_see(const Order& order, Processes& processes) {
   bool all_see = true;
   const bool sees = processes.is_root() || answers_sign(order, processes.rank());
-  processes.gather(std::move(MessageBuffer().put(sees)), [&](int rank, MessageBuffer& answer) {
-    all_see = answer.take<bool>() && (rank == 0 || holds_sign(sign_of(order, rank), order)) && all_see;
+  processes.gather(packed(sees), [&](int rank, MessageBuffer& answer) {
+    all_see = unpacked<bool>(answer) && (rank == 0 || holds_sign(sign_of(order, rank), order)) && all_see;
   });
-  return processes.broadcast(std::move(MessageBuffer().put(all_see))).take<bool>();
+  return unpacked<bool>(processes.broadcast(packed(all_see)));
 }
 
 Order order_of(const results::ResultFolder& folder) {

@@ -6,43 +6,6 @@
 #include "run/checkpoint.hpp"
 
 namespace slipfront::run {
-namespace {
-
-statics::Equilibrium at_interface(const statics::Equilibrium& state) {
-  statics::Equilibrium light;
-  light.shear_m = state.shear_m;
-  light.contact = state.contact;
-  light.tractions = state.tractions;
-  light.peak_ratio = state.peak_ratio;
-  light.peak_x_m = state.peak_x_m;
-  light.inside_from_m = state.inside_from_m;
-  light.inside_to_m = state.inside_to_m;
-  return light;
-}
-
-/// The state without the plate's displacements, and without its mesh.
-InitialState at_interface(const InitialState& state) {
-  InitialState light;
-  light.n_nodes = state.n_nodes;
-  light.n_cells = state.n_cells;
-  light.tributary_m = state.tributary_m;
-  light.common = at_interface(state.common);
-  light.spontaneous = at_interface(state.spontaneous);
-  light.prescribed = state.prescribed;
-  light.mu_s = state.mu_s;
-  light.critical_shear_m = state.critical_shear_m;
-  light.n_unknowns = state.n_unknowns;
-  light.solver = state.solver;
-  light.solver_bytes = state.solver_bytes;
-  light.wall_s = state.wall_s;
-  light.loads = state.loads;
-  if (state.ramp)
-    light.ramp = motion::Ramp{at_interface(state.ramp->common), at_interface(state.ramp->spontaneous),
-                              state.ramp->record, state.ramp->steps, state.ramp->interrupted};
-  return light;
-}
-
-}  // namespace
 
 std::string FinishedRuns::key_of(const input::Case& config) {
   return files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text +
@@ -82,7 +45,8 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
 
 void FinishedRuns::keep(const Result& result, const InitialState& initial) const {
   if (!files::is_there(dir_)) files::make_folder(dir_);
-  auto light = at_interface(initial);
+  auto light = initial;
+  light.release_displacements();
   results::OutputArchive archive(file_of(result.config));
   auto key = key_of(result.config);
   archive(key, result, light);

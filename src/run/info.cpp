@@ -166,8 +166,7 @@ double looks_of(const input::Case& config, const Needs& needs) {
 /// Node updates/s of this machine, from a few steps: under the mean pressure, with half of the interface
 /// sliding, which takes longer than to stick; beside the programs that run now.
 /// @param n_steps  at once
-template <class Stepper>
-double measured_rate_per_s(const input::Case& config, const Timed& timed, Stepper& stepper,
+double measured_rate_per_s(const input::Case& config, const Timed& timed, motion::TimeStepper& stepper,
                            std::int64_t n_steps) {
   constexpr double min_s = 20e-3, max_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
@@ -298,7 +297,7 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
   // As many at once as between two looks.
   const double steps = static_cast<double>(info.n_steps) / looks_of(config, info.needs);
   if (is_plain(config)) {
-    const auto plain = new_plain_stepper(config, meshes.plate, meshes.base);
+    const auto plain = new_time_stepper(config, meshes.plate, meshes.base);
     info.node_updates_per_s = measured_rate_per_s(config, timed, *plain, 1);
   } else {
     info.node_updates_per_s =

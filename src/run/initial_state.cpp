@@ -16,6 +16,7 @@
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
+#include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -42,6 +43,14 @@ std::string strengths_text(const input::Case& config) {
 }
 
 }  // namespace
+
+void InitialState::release_displacements(const statics::Equilibrium* but) {
+  std::vector<statics::Equilibrium*> states = {&common, &spontaneous};
+  if (ramp) states.insert(states.end(), {&ramp->common, &ramp->spontaneous});
+  for (auto* state : states)
+    for (auto* field : state->displacements())
+      if (state != but) *field = {};
+}
 
 std::string initial_state_key(const input::Case& config) {
   using input::Stage;
@@ -115,25 +124,21 @@ mesh::Mesh make_base(const input::Case& config, bool only_interface) {
 std::vector<motion::Probe> probes_among_columns(const input::Case& config, const mesh::Mesh& interface) {
   constexpr int beside = 4;
   const auto& grid = interface.grid;
-  const auto base_material = input::base_material(config);
   std::vector<motion::Probe> probes;
   for (const auto& place : input::probe_places(config)) {
     const double column = std::clamp(place.x_m / grid.spacing_m, 0.0, static_cast<double>(grid.columns));
     const int begin = std::max(static_cast<int>(column) - beside, 0);
     const int end = std::min(static_cast<int>(column) + beside + 2, grid.stride());
-    std::vector<mesh::Subset::Range> ranges = {{begin, end}};
+    std::vector<mesh::Span> ranges = {{begin, end}};
     if (interface.period_m > 0 && (begin == 0 || end == grid.stride()))
       ranges = {{0, 2 * beside}, {grid.stride() - 2 * beside, grid.stride()}};
     const mesh::Subset columns(ranges);
     const auto plate = mesh::make_columns(config.plate, columns);
     std::optional<mesh::Mesh> base;
-    std::vector<motion::BodySource> bodies = {{plate, config.material}};
-    if (input::has_base_body(config)) {
-      base = mesh::make_columns(input::base_plate(config), columns);
-      bodies.push_back({*base, base_material});
-    }
-    auto probe = motion::locate_probes(std::span(&place, 1), bodies).front();
-    const mesh::NodeColumns of_subdomain(bodies[probe.body].mesh, columns, grid.stride());
+    if (input::has_base_body(config)) base = mesh::make_columns(input::base_plate(config), columns);
+    auto probe =
+        motion::locate_probes(std::span(&place, 1), GlobalBodies(config, plate, base).bodies()).front();
+    const mesh::NodeColumns of_subdomain(probe.body == 0 ? plate : *base, columns, grid.stride());
     for (auto& n : probe.node) n = of_subdomain.global_number(n);
     probes.push_back(probe);
   }
@@ -154,10 +159,7 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
                                      const std::optional<mesh::Mesh>& base) {
   if (config.probes.x_m.empty()) return {};
   if (plate.is_interface()) return probes_among_columns(config, plate);
-  const auto base_material = input::base_material(config);
-  std::vector<motion::BodySource> bodies = {{plate, config.material}};
-  if (base) bodies.push_back({*base, base_material});
-  return motion::locate_probes(input::probe_places(config), bodies);
+  return motion::locate_probes(input::probe_places(config), GlobalBodies(config, plate, base).bodies());
 }
 
 namespace {
@@ -191,33 +193,21 @@ Meshes check_interfaces(const input::Case& config) {
   return checked_meshes(config, true);
 }
 
-namespace {
-
-/// Calls f with the bodies of a case.
-template <class F>
-auto with_bodies(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base,
-                 F&& f) {
-  const auto material = input::base_material(config);
-  std::vector<motion::BodySource> bodies = {{plate, config.material}};
-  if (base) bodies.push_back({*base, material});
-  return f(bodies, input::contact_model(config, interface_x_m(plate)));
-}
-
-}  // namespace
-
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution) {
-  return with_bodies(config, plate, base, [&](const auto& bodies, const auto& contact) {
-    return std::make_unique<motion::Stepper>(bodies, contact, config.time, execution);
-  });
+  return std::make_unique<motion::Stepper>(GlobalBodies(config, plate, base).bodies(),
+                                           input::contact_model(config, interface_x_m(plate)), config.time,
+                                           execution);
 }
 
-std::unique_ptr<motion::PlainStepper> new_plain_stepper(const input::Case& config, const mesh::Mesh& plate,
-                                                        const std::optional<mesh::Mesh>& base) {
-  return with_bodies(config, plate, base, [&](const auto& bodies, const auto& contact) {
-    return std::make_unique<motion::PlainStepper>(bodies, contact, config.time);
-  });
+std::unique_ptr<motion::TimeStepper> new_time_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                                      const std::optional<mesh::Mesh>& base,
+                                                      const motion::Execution& execution) {
+  if (!is_plain(config)) return new_stepper(config, plate, base, execution);
+  return std::make_unique<motion::PlainStepper>(GlobalBodies(config, plate, base).bodies(),
+                                                input::contact_model(config, interface_x_m(plate)),
+                                                config.time);
 }
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
@@ -238,7 +228,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
                                           initial.base ? &*initial.base : nullptr);
     initial.spontaneous = initial.common;
-    initial.critical_shear_m = fronts::undefined;
+    initial.critical_shear_m = nan;
     initial.wall_s = seconds_since(start);
     return initial;
   }

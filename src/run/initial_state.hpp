@@ -38,6 +38,9 @@ struct InitialState {
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
   std::optional<FoundLoads> loads;   ///< where the case gives forces
 
+  /// Of all states but one.
+  void release_displacements(const statics::Equilibrium* but = nullptr);
+
   /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
@@ -95,8 +98,9 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution = {});
-/// The same by the plain scheme.
-std::unique_ptr<motion::PlainStepper> new_plain_stepper(const input::Case& config, const mesh::Mesh& plate,
-                                                        const std::optional<mesh::Mesh>& base);
+/// The same, fast or by the plain scheme, as the case says.
+std::unique_ptr<motion::TimeStepper> new_time_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                                      const std::optional<mesh::Mesh>& base,
+                                                      const motion::Execution& execution = {});
 
 }  // namespace slipfront::run

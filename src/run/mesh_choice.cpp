@@ -25,9 +25,7 @@ double needed_elements(const input::Case& config, const RuptureOutlook& rupture)
   const double h_m = config.plate.element_size_m;
   const double damping_s =
       stability::damping_of_grid_waves_s(bodies, config.friction, config.regularisation, h_m);
-  double c_L = solid::longitudinal_speed_m_per_s(bodies.above);
-  if (bodies.below) c_L = std::max(c_L, solid::longitudinal_speed_m_per_s(*bodies.below));
-  return std::max(n, damping_s * c_L / (harmless_damping * h_m));
+  return std::max(n, damping_s * fastest_speed_m_per_s(config) / (harmless_damping * h_m));
 }
 
 bool is_whole(double count) {

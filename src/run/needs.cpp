@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "interface/friction.hpp"
 #include "mesh/plate.hpp"
+#include "motion/every.hpp"
 #include "record/energies.hpp"
 #include "record/probes.hpp"
 #include "record/record.hpp"
@@ -270,8 +271,8 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   const auto& output = config.output;
   const double end_s = config.time.end_s;
   Needs n;
-  n.steps = countable(std::ceil(end_s / size.step_s * (1 - 1e-12)),
-                      Message("{} = {:g}", Key("time.end_s"), end_s), "an earlier end");
+  n.steps = countable(motion::steps_to(end_s, size.step_s), Message("{} = {:g}", Key("time.end_s"), end_s),
+                      "an earlier end");
   if (config.loading.method == statics::LoadingMethod::ramp)
     n.ramp_steps = countable(std::ceil(critical_shear_m(config) / (top_speed_m_per_s(config) * size.step_s)),
                              Message("the ramp with {} = {:g}", Key("loading.shear_speed_over_c_L"),

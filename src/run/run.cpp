@@ -103,23 +103,17 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 namespace {
 
 /// Of one process.
-std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, const InitialState& initial,
-                                                     const motion::Execution& execution) {
-  const auto start = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
-    stepper->set_probes(probes_of(config, initial.mesh, initial.base));
-    stepper->start(event_state(config, initial), top_speed_m_per_s(config), loads_of_event(config, initial));
-    return stepper;
-  };
-  if (is_plain(config)) return start(new_plain_stepper(config, initial.mesh, initial.base));
-  return start(new_stepper(config, initial.mesh, initial.base, execution));
+std::unique_ptr<motion::TimeStepper> whole_stepper(const input::Case& config, const InitialState& initial,
+                                                   const motion::Execution& execution) {
+  auto stepper = new_time_stepper(config, initial.mesh, initial.base, execution);
+  stepper->set_probes(probes_of(config, initial.mesh, initial.base));
+  return stepper;
 }
 
-std::array<solid::Field*, 4> displacements_of(statics::Equilibrium& state) {
-  return {&state.u_m, &state.u_per_shear, &state.below_u_m, &state.below_u_per_shear};
-}
-
-void release_displacements(statics::Equilibrium& state) {
-  for (auto* field : displacements_of(state)) *field = {};
+std::unique_ptr<motion::TimeStepper> stepper_of(const input::Case& config, InitialState& initial,
+                                                const motion::Execution& execution, Processes& processes) {
+  if (processes.size() == 1) return whole_stepper(config, initial, execution);
+  return new_distributed_stepper(config, initial, processes, execution);
 }
 
 /// What only the stepper needed.
@@ -143,43 +137,22 @@ motion::Loads loads_of_event(const input::Case& config, const InitialState& init
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
                                                  const motion::Execution& execution, Processes& processes) {
   auto& state = event_state(config, initial);
-  if (&state != &initial.common) release_displacements(initial.common);
-  if (&state != &initial.spontaneous) release_displacements(initial.spontaneous);
-  if (initial.ramp) {
-    release_displacements(initial.ramp->common);
-    release_displacements(initial.ramp->spontaneous);
-  }
-  std::unique_ptr<motion::TimeStepper> stepper;
-  if (processes.size() == 1) {
-    stepper = started_stepper(config, initial, execution);
-  } else {
-    // The other ranks get the state without its displacements, and their columns of these.
-    std::array<solid::Field, 4> u;
-    for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *displacements_of(state)[k]);
-    const auto loads = from_root(processes, [&] { return loads_of_event(config, initial); });
-    auto distributed = new_distributed_stepper(config, initial, processes, execution);
-    for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *displacements_of(state)[k]);
-    distributed->start(state, top_speed_m_per_s(config), loads);
-    stepper = std::move(distributed);
-  }
-  release_displacements(state);
+  initial.release_displacements(&state);
+  const auto loads = from_root(processes, [&] { return loads_of_event(config, initial); });
+  // The other ranks get the state without its displacements, and their columns of these.
+  std::array<solid::Field, 4> u;
+  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
+  auto stepper = stepper_of(config, initial, execution, processes);
+  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
+  stepper->start(state, top_speed_m_per_s(config), loads);
+  initial.release_displacements();
   release_nodes(initial);
   return stepper;
 }
 
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
                                                   const motion::Execution& execution, Processes& processes) {
-  const auto with_probes = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
-    stepper->set_probes(probes_of(config, initial.mesh, initial.base));
-    return stepper;
-  };
-  std::unique_ptr<motion::TimeStepper> stepper;
-  if (processes.size() > 1)
-    stepper = new_distributed_stepper(config, initial, processes, execution);
-  else if (is_plain(config))
-    stepper = with_probes(new_plain_stepper(config, initial.mesh, initial.base));
-  else
-    stepper = with_probes(new_stepper(config, initial.mesh, initial.base, execution));
+  auto stepper = stepper_of(config, initial, execution, processes);
   release_nodes(initial);
   return stepper;
 }
@@ -205,7 +178,8 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution, motion::Observers more) {
-  const auto stepper = started_stepper(config, initial, execution);
+  const auto stepper = whole_stepper(config, initial, execution);
+  stepper->start(event_state(config, initial), top_speed_m_per_s(config), loads_of_event(config, initial));
   return run_from(config, initial, *stepper, monitor, nullptr, std::move(more));
 }
 

@@ -170,7 +170,7 @@ struct Info {
   std::optional<MeshChoice> cheapest_mesh;
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
-  double well_posedness_x_m = fronts::undefined;
+  double well_posedness_x_m = nan;
   std::optional<Shared> shared;
   std::optional<FoundLoads> loads;  ///< see loaded_state
   std::vector<std::string> notes;   ///< see notes_of_case

@@ -21,7 +21,6 @@
 #include "run/choices.hpp"
 #include "run/fields.hpp"
 #include "run/shared_states.hpp"
-#include "run/snapshot_plan.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -267,7 +266,7 @@ bool Session::look(const char* part, std::int64_t step, std::int64_t total, doub
                         time_s - kept_time_s_ >= options_.keep_every_s;
     wanted.report = event_ && seconds_since(reported_) >= report_interval_s_;
   }
-  if (event_) wanted = processes_.broadcast(std::move(MessageBuffer().put(wanted))).take<Wanted>();
+  if (event_) wanted = unpacked<Wanted>(processes_.broadcast(packed(wanted)));
   if (wanted.checkpoint) keep();
   if (wanted.request == Request::keep && is_root())
     hooks_.note(fmt::format("checkpoint at t = {:.6g} s of the {}", time_s, part));
@@ -325,8 +324,7 @@ Finished Session::finish(motion::Event event) {
     measure(run.result, run.initial);
     write_results(run);
   });
-  if (!snapshot_plan(config_, run.result.step_s).times_s.empty())
-    write_fields(folder_, config_, processes_, hooks_.note);
+  write_fields(folder_, config_, processes_, hooks_.note);
   at_root([&] {
     if (status_of(run.result).name == "complete") folder_->publish();
   });
@@ -369,8 +367,7 @@ void require_unchanged(const std::string& table, const std::string& kept, const 
 Finished run_shared(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
                     const SessionHooks& hooks, bool resumed, std::unique_ptr<Checkpoints::Checkpoint> kept) {
   Session session(&folder, config, options, hooks, resumed);
-  MessageBuffer told;
-  told.put(true).put(kept && kept->head.in_event);
+  auto told = packed(true, kept && kept->head.in_event);
   pack_case(config, told);
   options.processes->broadcast(std::move(told));
   options.processes->set_awaited(true);
@@ -421,8 +418,8 @@ void take_part(Processes& processes) {
     std::signal(signal, SIG_IGN);
   for (;;) try {
       auto told = processes.broadcast({});
-      if (!told.take<bool>()) return;
-      const bool in_event = told.take<bool>();
+      if (!unpacked<bool>(told)) return;
+      const bool in_event = unpacked<bool>(told);
       const auto config = unpack_case(told);
       SessionOptions options;
       options.processes = &processes;
@@ -432,7 +429,7 @@ void take_part(Processes& processes) {
 }
 
 void release(Processes& processes) {
-  processes.broadcast(std::move(MessageBuffer().put(false)));
+  processes.broadcast(packed(false));
 }
 
 std::string what_was_kept(const results::ResultFolder& folder) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/error.hpp"
+#include "motion/every.hpp"
 
 namespace slipfront::run {
 
@@ -44,7 +45,7 @@ SnapshotPlan snapshot_plan(const input::Case& config, double step_s) {
   std::int64_t n_late = 0, n_near = 0;
   double last_step = -1;
   for (const auto& [time_s, is_listed] : asked_snapshots(config, step_s)) {
-    const double step = std::ceil(time_s / step_s * (1 - 1e-12));
+    const double step = motion::steps_to(time_s, step_s);
     if (time_s > config.time.end_s) {
       ++n_late;
     } else if (step == last_step) {

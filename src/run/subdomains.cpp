@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/subdomains.hpp"
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -28,36 +27,11 @@ struct Plan {
   std::vector<double> whole_x_m;         ///< of the whole interface: friction along x is read at its nodes
   std::vector<motion::Probe> probes;
 
-  void put(MessageBuffer& to) const {
-    whole.put(to);
-    to.put(threads).put(steps.size());
-    for (const auto& of_body : steps) to.put(of_body.stable_step_s).put(of_body.multiples);
-    to.put(whole_x_m).put(probes);
-  }
-  static Plan take(MessageBuffer& from) {
-    Plan plan;
-    plan.whole = motion::Decomposition::take(from);
-    plan.threads = from.take<int>();
-    for (auto n = from.take<std::size_t>(); n > 0; --n) {
-      const auto stable_step_s = from.take<double>();
-      plan.steps.push_back({stable_step_s, from.take_all<int>()});
-    }
-    plan.whole_x_m = from.take_all<double>();
-    plan.probes = from.take_all<motion::Probe>();
-    return plan;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(whole, threads, steps, whole_x_m, probes);
   }
 };
-
-interface::ContactModel contact_of(const input::Case& config, const std::vector<double>& whole_x_m,
-                                   const mesh::Subset& interface_nodes) {
-  auto contact = input::contact_model(config, whole_x_m);
-  if (contact.of_nodes.empty()) return contact;
-  std::vector<interface::FrictionLaw> laws;
-  for (int k = 0; k < interface_nodes.count(); ++k)
-    laws.push_back(contact.of_nodes[static_cast<std::size_t>(interface_nodes.number_at(k))]);
-  contact.of_nodes = interface::NodeLaws(std::move(laws));
-  return contact;
-}
 
 /// Some columns of the bodies, for a stepper.
 class Columns {
@@ -115,10 +89,10 @@ void require_divisible(const input::Case& config, const Processes& processes) {
 
 IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh::Mesh& interface,
                                           const std::vector<motion::BodySteps>& steps, solid::Span columns) {
-  const mesh::Subset all({{columns.begin, columns.end}});
+  const mesh::Subset all({columns});
   Columns some(config, all, interface.grid.stride(), columns, steps, [](std::span<double>) {});
   const auto contact =
-      contact_of(config, interface_x_m(interface), motion::interface_nodes_in(interface, all));
+      input::contact_model(config, interface_x_m(interface), motion::interface_nodes_in(interface, all));
   auto stepper = std::make_unique<motion::Stepper>(some.sources(), contact, config.time, motion::Execution{});
   return {std::move(some.plate), std::move(some.base), std::move(stepper)};
 }
@@ -137,20 +111,16 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
     plan.threads = execution.threads;
     plan.whole_x_m = interface_x_m(initial.mesh);
     plan.probes = probes_of(config, initial.mesh, initial.base);
-    plan.put(to);
-    to.put(initial.mesh.grid).append(packed(initial));
+    to.append(packed(plan, initial.mesh.grid, initial));
   });
-  const auto plan = Plan::take(told);
-  if (!processes.is_root()) {
-    initial.mesh.grid = told.take<mesh::Grid>();
-    MessageArchive::reader(told)(initial);
-  }
+  const auto plan = unpacked<Plan>(told);
+  if (!processes.is_root()) MessageArchive::reader(told)(initial.mesh.grid, initial);
   const auto rank = processes.rank();
   const auto& partition = plan.whole.partition;
   const Columns own(config, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
                     [&](std::span<double> values) { processes.reduce_max(values); });
-  const auto contact =
-      contact_of(config, plan.whole_x_m, plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
+  const auto contact = input::contact_model(config, plan.whole_x_m,
+                                            plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
   auto stepper = std::make_unique<motion::DistributedStepper>(
       processes, plan.whole, own.sources(), contact, config.time, motion::Execution{.threads = plan.threads});
   stepper->set_probes(plan.probes);
@@ -158,24 +128,22 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
 }
 
 motion::Loads from_root(Processes& processes, const std::function<motion::Loads()>& make) {
-  const auto arrays = [](auto& loads) {
-    return std::array{&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m,
-                      &loads.intact};
+  motion::Loads loads;
+  const auto members = [&](auto&& archive) {
+    archive(loads.prestress_t_Pa, loads.prestress_p_Pa, loads.trigger_force_N_per_m, loads.trigger,
+            loads.intact);
   };
   auto told = processes.from_root([&](MessageBuffer& to) {
-    const auto loads = make();
-    for (const auto* values : arrays(loads)) to.put(*values);
-    to.put(loads.trigger);
+    loads = make();
+    members(MessageArchive(to));
   });
-  motion::Loads loads;
-  for (auto* values : arrays(loads)) *values = told.take_all<double>();
-  loads.trigger = told.take<interface::Trigger>();
+  members(MessageArchive::reader(told));
   return loads;
 }
 
 void require_same_program(Processes& processes) {
-  processes.gather(MessageBuffer().put(program_identity()), [&](int rank, MessageBuffer& buffer) {
-    if (const auto program = buffer.take_text(); program != program_identity())
+  processes.gather(packed(program_identity()), [&](int rank, MessageBuffer& buffer) {
+    if (const auto program = unpacked<std::string>(buffer); program != program_identity())
       throw UserError("slipfront: rank {} is {}, and rank 0 {}; start the same program everywhere", rank,
                       program, program_identity());
   });

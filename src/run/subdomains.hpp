@@ -30,7 +30,7 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
 /// Loads of the whole interface that rank 0 makes, on all ranks. See Processes::from_root
 motion::Loads from_root(Processes& processes, const std::function<motion::Loads()>& make);
 
-/// The bodies that ranks are to divide among themselves; their interfaces may be all that is held.
+/// The bodies of a case; their interfaces may be all that is held.
 class GlobalBodies {
  public:
   GlobalBodies(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base);

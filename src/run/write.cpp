@@ -275,9 +275,9 @@ static results::Origin origin_of(const input::Case& config) {
 results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s) {
   const auto origin = origin_of(config);
   const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
-  results::RunFiles files{results::history_table(initial.common.tractions.x_m, origin),
-                          {results::SnapshotRows::head_bytes_of(origin, n_snapshots),
-                           static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
+  results::RunFiles files{
+      results::history_table(initial.common.tractions.x_m, origin),
+      {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
   if (initial.base) {
     const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));
     files.snapshots.seam.insert(files.snapshots.seam.end(), below.begin(), below.end());

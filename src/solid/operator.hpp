@@ -46,10 +46,8 @@ struct EdgeStencil {
   double shear, twist;
 };
 
-/// Numbers [begin, end): columns of one grid row, or rows of a matrix.
-struct Span {
-  int begin = 0, end = 0;
-};
+/// Columns of one grid row, or rows of a matrix.
+using mesh::Span;
 
 /// Of all columns.
 inline constexpr Span all_columns = {0, std::numeric_limits<int>::max()};

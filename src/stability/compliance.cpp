@@ -6,8 +6,6 @@
 namespace slipfront::stability {
 namespace {
 
-constexpr Complex i_unit{0, 1};
-
 /// The plain quotient: moduli here are far from where squares overflow, for which the operator looks out.
 Complex quotient(Complex a, Complex b) {
   return a * std::conj(b) / std::norm(b);

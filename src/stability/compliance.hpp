@@ -9,6 +9,7 @@
 namespace slipfront::stability {
 
 using Complex = std::complex<double>;
+inline constexpr Complex i_unit{0, 1};
 
 /// A body y > 0 that slides on the rigid plane y = 0, or on a half-space y < 0.
 struct Bodies {

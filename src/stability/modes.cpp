@@ -13,8 +13,6 @@
 namespace slipfront::stability {
 namespace {
 
-constexpr Complex i_unit{0, 1};
-
 /// What friction does to a perturbation, in units of G k.
 struct Response {
   Complex of_pressure;  ///< of strength to pressure, over mu

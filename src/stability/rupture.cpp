@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "base/numbers.hpp"
 
 namespace slipfront::stability {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// mu* of two bodies of this material.
 double modulus_of_equals_Pa(const solid::Material& material) {
@@ -114,7 +113,6 @@ double strength_excess(const NodeBefore& node) {
 }
 
 Spread spread_of(std::vector<double> values) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (values.empty()) return {nan, nan, nan};
   std::ranges::sort(values);
   const std::size_t n = values.size();

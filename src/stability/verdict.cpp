@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "base/numbers.hpp"
 
 namespace slipfront::stability {
 namespace {
@@ -136,7 +137,7 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
       0 - w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);
   w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
   if (w.unbounded) {
-    w.fastest_growth_per_s = std::numeric_limits<double>::infinity();
+    w.fastest_growth_per_s = infinity;
   } else {
     // Four decades beyond the mesh: there damping or delay has long decided.
     const auto peak =

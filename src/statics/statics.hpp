@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -40,6 +41,9 @@ struct Equilibrium {
   double peak_x_m = 0;                        ///< where that is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
   bool is_inside(double x_m) const { return x_m >= inside_from_m && x_m <= inside_to_m; }
+  std::array<solid::Field*, 4> displacements() {
+    return {&u_m, &u_per_shear, &below_u_m, &below_u_per_shear};
+  }
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -60,6 +60,7 @@ def test_convergence_study_and_its_figure_agree(program, converge, tmp_path, eve
     assert compared >= 3
 
 
+@pytest.mark.slow
 def test_a_study_goes_on_and_adds_to_what_it_has(program, converge, tmp_path):
     out = tmp_path / "out"
     require_done(program(*converge(*LEFT, "--element-sizes", SIZES, "--threads", "1", "-q")))
@@ -78,6 +79,7 @@ def test_a_study_goes_on_and_adds_to_what_it_has(program, converge, tmp_path):
     assert verify_checksums(out) == []
 
 
+@pytest.mark.slow
 def test_an_interrupted_study_goes_on_to_the_same(program, converge, tmp_path):
     options = (*LEFT, "--element-sizes", f"{SIZES},1e-3", "--threads", "1")
     process = program.start(*converge(*options))
@@ -132,6 +134,7 @@ def test_a_folder_of_something_else_is_left_alone(program, converge, tmp_path):
     assert [file.name for file in (tmp_path / "out").iterdir()] == ["mine.txt"]
 
 
+@pytest.mark.slow
 def test_interface_step_study_writes_a_case_that_runs(program, coarse, tmp_path):
     # 400 rows do not fit.
     options = ("--rows", "2,4,400", "--substeps", "4,8", "--tolerance", "0.5", *LEFT)

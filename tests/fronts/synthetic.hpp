@@ -64,8 +64,7 @@ inline record::SlipRecord make_record(const std::vector<double>& x, const std::v
   for (const record::Onset& onset : record.onsets) {
     for (int k = onset.node - recipe.halo; k <= onset.node + recipe.halo; ++k) {
       const bool inside = k >= 0 && k < n;
-      record.around.push_back(inside ? recipe.traction(x[k], onset.time_s)
-                                     : record::Traction{undefined, undefined});
+      record.around.push_back(inside ? recipe.traction(x[k], onset.time_s) : record::Traction{nan, nan});
     }
   }
   return record;

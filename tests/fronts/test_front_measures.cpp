@@ -326,7 +326,7 @@ TEST(SlippingShare, SlipAgain) {
 
 TEST(SpeedSummary, LeavesOutTheStart) {
   Front front;
-  const double speed[] = {undefined, 3000, 1000, undefined, 1400, 1200};
+  const double speed[] = {nan, 3000, 1000, nan, 1400, 1200};
   for (int k = 0; k < 6; ++k) {
     FrontPoint point;
     point.x_m = 0.1 - 2e-3 * k;
@@ -406,9 +406,9 @@ TEST(Stretches, FallWhileTheOtherRises) {
 
 TEST(Stretches, UndefinedPoints) {
   auto c = curves(0.09, 0.0);
-  c.speed[110] = c.ratio[111] = undefined;
+  c.speed[110] = c.ratio[111] = nan;
   EXPECT_EQ(find_stretches(c.s, c.speed, c.ratio).size(), 1u);
-  c.speed[112] = undefined;
+  c.speed[112] = nan;
   const auto found = find_stretches(c.s, c.speed, c.ratio);  // cut at 73 mm into 13 and 15 mm
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].last, 109u);

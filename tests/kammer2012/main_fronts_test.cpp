@@ -100,7 +100,7 @@ TEST(MainFronts, AreNotThoseOfOtherStarts) {
 
 TEST(MainFronts, StartWithinReachOfTheFirstOnsetOrInTheMarginOfTheTriggerZone) {
   Outcome o = make_spontaneous(constant, constant);
-  for (const auto& [distance_m, n] : {std::pair{4.9e-3, 2U}, {5.1e-3, 0U}, {fronts::undefined, 0U}}) {
+  for (const auto& [distance_m, n] : {std::pair{4.9e-3, 2U}, {5.1e-3, 0U}, {nan, 0U}}) {
     o.first_onset_x_m = peak_x_m + distance_m;
     EXPECT_EQ(mains_of(o).size(), n) << distance_m;
   }
@@ -113,7 +113,7 @@ TEST(MainFronts, StartWithinReachOfTheFirstOnsetOrInTheMarginOfTheTriggerZone) {
 }
 
 TEST(MainFronts, EndWhereTheSpeedStaysLow) {
-  const double none = fronts::undefined;
+  const double none = nan;
   const std::pair<std::vector<double>, double> examples[] = {
       {{0.11, 0.099, 0.01, 0.05}, 3e-3},
       {{0.05, 0.05, 0.05, 0.11}, 0},  // slow for a while only

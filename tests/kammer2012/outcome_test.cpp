@@ -29,7 +29,7 @@ TEST(CriterionValue, OfEachCriterion) {
   EXPECT_DOUBLE_EQ(criterion_value(p, Criterion::static_ratio), 0.8);
   EXPECT_DOUBLE_EQ(criterion_value(p, Criterion::dynamic_ratio), 0.75);
   EXPECT_DOUBLE_EQ(criterion_value(p, Criterion::energy_rise), 0.25);
-  p.t_d_Pa = p.U_s_J_per_m3 = fronts::undefined;
+  p.t_d_Pa = p.U_s_J_per_m3 = nan;
   EXPECT_TRUE(std::isnan(criterion_value(p, Criterion::dynamic_ratio)));
   EXPECT_TRUE(std::isnan(criterion_value(p, Criterion::energy_rise)));
 }
@@ -64,8 +64,8 @@ TEST(Counts, LeavesOutTheNeighbourhoodOfSpontaneousNucleationOnly) {
 
 TEST(CriterionSeries, HasTheSamePointsForEveryCriterion) {
   auto o = make_spontaneous();
-  o.fronts[0].points[10].v_tip_m_per_s = fronts::undefined;
-  o.fronts[0].points[20].U_s_J_per_m3 = fronts::undefined;
+  o.fronts[0].points[10].v_tip_m_per_s = nan;
+  o.fronts[0].points[20].U_s_J_per_m3 = nan;
   for (const auto criterion : {Criterion::static_ratio, Criterion::dynamic_ratio, Criterion::energy_rise}) {
     const auto series = criterion_series(only(o), criterion);
     ASSERT_EQ(series.size(), 2U);

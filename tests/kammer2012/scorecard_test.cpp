@@ -125,7 +125,7 @@ TEST(Scorecard, RunsWithoutFrontsProveNothing) {
   auto runs = make_good();
   for (auto* o : {&runs.spontaneous, &runs.left, &runs.right, &runs.spontaneous_mu_k_1}) {
     o->fronts.clear();
-    o->first_onset_x_m = fronts::undefined;
+    o->first_onset_x_m = nan;
   }
   for (auto& study : runs.studies)
     for (auto& point : study.outcomes)

@@ -106,7 +106,7 @@ inline Outcome make_event(const std::string& name, EventKind kind, double mu_k =
   o.peak_x_m = peak_x_m;
   o.first_onset_x_m = peak_x_m + 1e-3;
   o.critical_shear_m = 0.47e-3;
-  o.ramp_critical_shear_m = fronts::undefined;
+  o.ramp_critical_shear_m = nan;
   return o;
 }
 
@@ -142,7 +142,7 @@ inline Outcome make_right(const Profile& v) {
 /// From x = 80 to 50 mm the dynamic ratio rises while the speed goes on falling.
 inline void let_ratio_rise(fronts::Front& front, double from_m = 0.08, double to_m = 0.05) {
   const int direction = front.direction;
-  double at_begin = fronts::undefined;
+  double at_begin = nan;
   for (auto& p : front.points) {
     const double into = direction * (p.x_m - from_m);
     if (into < -1e-9 || into > std::abs(to_m - from_m) + 1e-9) continue;

@@ -188,7 +188,7 @@ TEST(MakeColumns, MakesTheNodesThereAndTheCellsBetweenThem) {
     some.fine_height_m = 8e-3;
     if (form.coarsenings == 2) some.height_m = 0.06;
     // Cuts anywhere, within units of transitions, too.
-    for (const auto& range : {Subset::Range{0, 25}, {9, 33}, {18, form.columns + 1}, {15, 34}})
+    for (const auto& range : {Span{0, 25}, {9, 33}, {18, form.columns + 1}, {15, 34}})
       expect_columns(some, Subset({range}));
     if (form.sides == Sides::periodic) {
       expect_columns(some, Subset({{0, 17}, {32, 49}}));

@@ -46,30 +46,25 @@ void expect_end(const Processes& processes, F&& work) {
   EXPECT_THROW(work(), FailedElsewhere);
 }
 
-MessageBuffer message(int number) {
-  return MessageBuffer().put(number);
-}
-
 TEST(Collectives, GiveEachRankItsNumbersInTheirOrder) {
   for (int n = 1; n < 12; ++n) {
     Ranks ranks(n);
     std::vector<int> expected, gathered;
     for (int rank = 0; rank < n; ++rank) expected.push_back(10 * rank);
     ranks.run([&](Processes& processes) {
-      EXPECT_EQ(processes.broadcast(message(processes.is_root() ? 7 : 0)).take<int>(), 7);
+      EXPECT_EQ(unpacked<int>(processes.broadcast(packed(processes.is_root() ? 7 : 0))), 7);
       std::vector<int> all;
-      for (auto& buffer : processes.all_gather(message(10 * processes.rank())))
-        all.push_back(buffer.take<int>());
+      for (auto& buffer : processes.all_gather(packed(10 * processes.rank())))
+        all.push_back(unpacked<int>(buffer));
       EXPECT_EQ(all, expected);
-      EXPECT_EQ(processes.scatter([](int rank) { return message(10 * rank); }).take<int>(),
+      EXPECT_EQ(unpacked<int>(processes.scatter([](int rank) { return packed(10 * rank); })),
                 10 * processes.rank());
-      processes.gather(message(10 * processes.rank()), [&](int rank, MessageBuffer& buffer) {
+      processes.gather(packed(10 * processes.rank()), [&](int rank, MessageBuffer& buffer) {
         EXPECT_TRUE(processes.is_root());
         EXPECT_EQ(rank, static_cast<int>(gathered.size()));
-        gathered.push_back(buffer.take<int>());
+        gathered.push_back(unpacked<int>(buffer));
       });
-      auto made = processes.from_root([](MessageBuffer& to) { to.put(3); });
-      EXPECT_EQ(made.take<int>(), 3);
+      EXPECT_EQ(unpacked<int>(processes.from_root([](MessageBuffer& to) { to.append(packed(3)); })), 3);
     });
     EXPECT_EQ(gathered, expected);
   }

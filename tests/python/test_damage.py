@@ -24,7 +24,7 @@ from slipfront.report.command import main as report
 from synthetic import interrupt, seal, write_output
 from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
 
-FUZZ_N = int(os.environ.get("SLIPFRONT_FUZZ_N", "32"))
+FUZZ_N = int(os.environ.get("SLIPFRONT_FUZZ_N", "16"))
 SEED = int(os.environ.get("SLIPFRONT_FUZZ_SEED", "20120401"))
 TEXTS = b'\xff \0 nan inf -1 0 1e308 1e999 null [] {} " # \n'.split(b" ")
 

@@ -167,6 +167,7 @@ def test_all_pages_of_the_problems_are_renewed(tmp_path):
     assert (pages.target / "README.md").read_text().endswith("| [Column](column.md) | 1 of 1 |\n")
 
 
+@pytest.mark.slow
 def test_results_that_are_damaged_or_missing_are_refused(pages):
     file = pages.results / pages.file
     file.write_text(file.read_text().replace("1", "2", 1) + " ")

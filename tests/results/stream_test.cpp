@@ -41,9 +41,7 @@ class Stream : public test::InFolder {
     all.x_m = x_m_;
     return all;
   }
-  RunFiles files() const {
-    return {history_table(x_m_), {SnapshotRows::head_bytes_of({}, 10), mesh_.n_nodes}};
-  }
+  RunFiles files() const { return {history_table(x_m_), {.n_snapshots = 10, .n_nodes = mesh_.n_nodes}}; }
   /// What rows and a snapshot with every tenth make of a folder.
   ResultStream::Extents give(ResultStream& stream, int first, int end) {
     for (int k = first; k < end; ++k) {

@@ -98,10 +98,10 @@ class ThreadProcess final : public Processes {
   }
   void reduce_max(std::span<double> values) override {
     for (int other = 0; other < size(); ++other)
-      if (other != rank_) send(other, MessageBuffer().put(std::span<const double>(values)));
+      if (other != rank_) send(other, packed(std::vector(values.begin(), values.end())));
     for (int other = 0; other < size(); ++other) {
       if (other == rank_) continue;
-      const auto theirs = receive(other).take_all<double>();
+      const auto theirs = unpacked<std::vector<double>>(receive(other));
       for (std::size_t k = 0; k < values.size(); ++k) values[k] = std::max(values[k], theirs[k]);
     }
   }

@@ -78,8 +78,8 @@ inline void write_snapshots(const std::filesystem::path& dir, const mesh::Slabs&
                             const results::SnapshotContents& contents = {},
                             const std::vector<std::pair<std::size_t, std::size_t>>& seam = {}) {
   const std::vector<double> x_m = {0};
-  const auto head_bytes = results::SnapshotRows::head_bytes_of(contents.origin, snapshots.size());
-  results::ResultStream stream(dir, {results::history_table(x_m), {head_bytes, mesh.n_nodes, seam}});
+  results::ResultStream stream(
+      dir, {results::history_table(x_m), {contents.origin, snapshots.size(), mesh.n_nodes, seam}});
   for (const auto& snapshot : snapshots) stream.snapshot(snapshot);
   stream.finish();
   results::finish_snapshots(dir / results::snapshot_file, mesh, contents);

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from slipfront.files import DataError, exists
 from slipfront.folder import LIST, located, publication, result_file, sha256
@@ -21,6 +20,7 @@ from slipfront.sweep.work import DONE, FAILED
 from slipfront.units import Unit, engineering, name_of, unit_of
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 TABLE = "sweep.csv"
@@ -62,6 +62,8 @@ def row_of(folder: Path, point: Point) -> dict[str, Cell]:
 
 def table_of(sweep: Sweep, rows: list[dict[str, Cell]]) -> pd.DataFrame:
     """A row per point: folder, values of the keys, status, quantities, message."""
+    import pandas as pd
+
     names = ["folder", *sweep.vary, "status", *(q.name for q in QUANTITIES), "message"]
     table = pd.DataFrame(rows, columns=names)
     for q in QUANTITIES:

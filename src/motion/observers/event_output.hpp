@@ -28,20 +28,11 @@ struct KeptOutput final : EventOutput {
   record::ProbeRecord probes;
 
   void sample(const record::History& row) override {
-    const auto append = [&](const auto& column) {
-      auto& to = history.*column.member;
-      to.insert(to.end(), (row.*column.member).begin(), (row.*column.member).end());
-    };
-    append(record::history_time);
-    for (const auto& field : record::history_fields) append(field);
+    record::append_rows(history, row, record::history_fields);
   }
   void snapshot(TimeStepper& stepper) override { snapshots.push_back(stepper.snapshot()); }
   void probe(const record::ProbeRecord& rows) override {
-    probes.time_s.insert(probes.time_s.end(), rows.time_s.begin(), rows.time_s.end());
-    for (const auto& field : record::probe_fields) {
-      auto& to = probes.*field.member;
-      to.insert(to.end(), (rows.*field.member).begin(), (rows.*field.member).end());
-    }
+    record::append_rows(probes, rows, record::probe_fields);
   }
 };
 
