@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "interface/friction/coulomb.hpp"
 #include "stability/modes.hpp"
 #include "verification/body.hpp"
@@ -57,7 +58,7 @@ Complex mode(const interface::ContactModel& contact) {
   if (sliding.mu == 1 && sliding.slope_s_per_m == 0 && sliding.relaxed == interface::Relaxed::none)
     return {0, -std::numbers::sqrt2};
   const auto fastest = stability::fastest_growing_mode(undamped, sliding, k_per_m);
-  return fastest ? fastest->s_per_s / rate_unit_per_s() : Complex{std::nan(""), 0};
+  return fastest ? fastest->s_per_s / rate_unit_per_s() : Complex{nan, 0};
 }
 
 /// The rate with which the program carries a mode.

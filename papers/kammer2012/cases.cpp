@@ -7,8 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <utility>
+
+#include "base/numbers.hpp"
 
 namespace slipfront::kammer2012 {
 
@@ -308,15 +309,14 @@ Study relaxation_time_study(const char* name, const char* why, Relaxed what) {
 }
 
 Study relaxation_length_study() {
-  Study study =
-      make_study({"relaxation_length_strength",
-                  "friction.relaxation_length_m",
-                  "strength relaxed at the rate (|v| + 0.1 m/s)/L",
-                  {0.01e-6, 0.03e-6, 0.1e-6, 0.3e-6, 1e-6, 3e-6},
-                  [](input::Case& c, double v) {
-                    c.regularisation = {Relaxed::strength, v, 0.1, std::numeric_limits<double>::infinity()};
-                  }},
-                 all_events, false);
+  Study study = make_study({"relaxation_length_strength",
+                            "friction.relaxation_length_m",
+                            "strength relaxed at the rate (|v| + 0.1 m/s)/L",
+                            {0.01e-6, 0.03e-6, 0.1e-6, 0.3e-6, 1e-6, 3e-6},
+                            [](input::Case& c, double v) {
+                              c.regularisation = {Relaxed::strength, v, 0.1, infinity};
+                            }},
+                           all_events, false);
   study.own_reference = true;
   return study;
 }

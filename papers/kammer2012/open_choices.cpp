@@ -9,12 +9,12 @@
 #include <boost/random/sobol.hpp>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <span>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "fronts/measures.hpp"
 #include "input/schema.hpp"
 #include "papers/kammer2012/main_fronts.hpp"
@@ -75,7 +75,7 @@ void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::stri
       {0.1e-6, 1e-6, 5e-6, 10e-6}, Between::logarithmic, standard.ramp_s,
       [](input::Case& c, double v) { c.trigger.ramp_s = v; }, {"added", "raised"});
   add("duration_s", "event.trigger_duration_s", "taken away behind the front, or held",
-      {15e-6, 30e-6, 60e-6, std::numeric_limits<double>::infinity()}, Between::nothing, standard.duration_s,
+      {15e-6, 30e-6, 60e-6, infinity}, Between::nothing, standard.duration_s,
       [](input::Case& c, double v) { c.trigger.duration_s = v; }, {"added", "raised"});
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/numbers.hpp"
 #include "fronts/measures.hpp"
 
 namespace slipfront::kammer2012 {
@@ -26,7 +27,7 @@ Outcome make_outcome(const std::string& name, const run::Result& result, const r
   o.ramp_onsets = initial.ramp ? initial.ramp->record.n_onsets() : 0;
 
   o.first_onset_x_m = nan;
-  double first_s = std::numeric_limits<double>::infinity();
+  double first_s = infinity;
   for (const auto& onset : result.event.record.onsets) {
     const double x = result.event.record.x_m[onset.node];
     if (x < o.inside_from_m || x > o.inside_to_m || onset.time_s > first_s) continue;

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "fronts/measures.hpp"
 #include "papers/kammer2012/evidence.hpp"
 #include "papers/kammer2012/second_tests.hpp"
@@ -133,7 +133,7 @@ class Scorecard {
   void static_state() {
     const auto& o = r_.spontaneous;
     const double w = o.config.plate.width_m;
-    double least = std::numeric_limits<double>::infinity(), most = 0;
+    double least = infinity, most = 0;
     for (std::size_t k = 0; k < o.common.x_m.size(); ++k) {
       if (o.common.x_m[k] < o.inside_from_m || o.common.x_m[k] > o.inside_to_m) continue;
       const double ratio = o.common.t_s_Pa[k] / o.common.p_s_Pa[k];
@@ -608,7 +608,7 @@ class Scorecard {
   /// Median over bins of x of the largest difference of the series' medians of y, in bins that at least two
   /// reach.
   static double median_difference(std::span<const fronts::Series> kinds) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = infinity, high = -low;
     for (const auto& s : kinds)
       for (const double x : s.x) low = std::min(low, x), high = std::max(high, x);
     std::vector<double> differences;
@@ -739,7 +739,7 @@ class Scorecard {
     const auto& o = r_.left;
     const auto* front = main_front(o, 1);
     double supershear = 0, behind = 0;
-    double min_lag = std::numeric_limits<double>::infinity();
+    double min_lag = infinity;
     if (front != nullptr) {
       const double source = o.contact_from_m + o.config.trigger.zone_m;
       for (const auto* p : speed_points(o, *front)) {

@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "fronts/measures.hpp"
 #include "papers/kammer2012/evidence.hpp"
 #include "papers/kammer2012/main_fronts.hpp"
@@ -265,7 +265,7 @@ double mean_speed(const Outcome* o) {
 /// Mean speeds over alpha, in words and as figures. Whether they fall at every step.
 bool state_mean_speeds(const StudyOutcome& alpha, Claim& row) {
   bool falls = true;
-  double before = std::numeric_limits<double>::infinity();
+  double before = infinity;
   std::string text;
   for (std::size_t k = 0; k < alpha.outcomes.size(); ++k) {
     const double mean = mean_speed(spontaneous_event(alpha.outcomes[k]));

@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <string>
 
 #ifdef __GLIBC__  // known from the headers above
 #include <malloc.h>
+
+#include "base/numbers.hpp"
 #endif
 
 namespace slipfront {
@@ -20,7 +21,7 @@ namespace {
 /// What a limit on a part of the process's memory leaves. @param column  of /proc/self/statm, which has the
 /// part
 double left_by_limit_bytes(int resource, int column) {
-  constexpr double without_limit = std::numeric_limits<double>::infinity();
+  constexpr double without_limit = infinity;
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return without_limit;
   std::ifstream file("/proc/self/statm");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "fronts/front.hpp"
 #include "interface/interface.hpp"
 #include "interface/nucleation.hpp"
@@ -92,7 +92,7 @@ struct Output {
   double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
   std::vector<double> snapshot_times_s;  ///< whole-plate fields, written to fields.vtkhdf
   /// Further ones at its multiples, from time 0 on.
-  double snapshot_interval_s = std::numeric_limits<double>::infinity();
+  double snapshot_interval_s = infinity;
   bool snapshot_stress = true;       ///< strain and stress of the cells with them
   double energy_interval_s = 20e-6;  ///< spacing of the rows of energy.csv
 };

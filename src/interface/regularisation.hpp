@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
-
 #include "base/exponential.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::interface {
 
@@ -19,9 +18,9 @@ enum class Relaxed {
 /// depends on the slip rate alone.
 struct Regularisation {
   Relaxed relaxed = Relaxed::none;
-  double length_m = std::numeric_limits<double>::infinity();  ///< L
-  double slip_rate_m_per_s = 0;                               ///< v*
-  double time_s = std::numeric_limits<double>::infinity();    ///< t*
+  double length_m = infinity;    ///< L
+  double slip_rate_m_per_s = 0;  ///< v*
+  double time_s = infinity;      ///< t*
 };
 
 /// Relaxation rate at a slip rate, 1/s.

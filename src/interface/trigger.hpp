@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
+#include "base/numbers.hpp"
 
 namespace slipfront::interface {
 
@@ -31,10 +31,10 @@ enum class TriggerForm {
 /// zone as a whole is loaded, +x for none; where it would lower t_s it is left out.
 struct Trigger {
   TriggerForm form = TriggerForm::added;
-  double zone_m = 10e-3;  ///< measured inward from the outermost node in contact
-  double amount = 5;      ///< see TriggerForm
-  double ramp_s = 5e-6;   ///< rises linearly from zero over this time
-  double duration_s = std::numeric_limits<double>::infinity();  ///< taken away this long after its start
+  double zone_m = 10e-3;         ///< measured inward from the outermost node in contact
+  double amount = 5;             ///< see TriggerForm
+  double ramp_s = 5e-6;          ///< rises linearly from zero over this time
+  double duration_s = infinity;  ///< taken away this long after its start
 };
 
 /// Time factor of the trigger, 0 to 1.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::mesh {
 namespace {
@@ -102,7 +103,7 @@ double distortion(const Patch& patch, const Fold& fold, int n) {
     const Point a{patch.at[corner.next].x - o.x, patch.at[corner.next].y - o.y};
     const Point b{patch.at[corner.last].x - o.x, patch.at[corner.last].y - o.y};
     const double area = a.x * b.y - a.y * b.x;
-    if (!(area > 0)) return std::numeric_limits<double>::infinity();
+    if (!(area > 0)) return infinity;
     const double square = 0.5 * fold.spacing_m * fold.spacing_m *
                           (a.x * a.x + a.y * a.y + b.x * b.x + b.y * b.y) / (area * area);
     const double power2 = square * square;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::mesh {
 
@@ -54,7 +54,7 @@ double distance_x_m(const Mesh& mesh, Node from, Node to) {
 
 double min_side_m(const Mesh& mesh) {
   SLIPFRONT_ASSERT(!mesh.cells.empty(), "a mesh without cells has no sides");
-  double min_square = std::numeric_limits<double>::infinity();
+  double min_square = infinity;
   for (const Cell& cell : mesh.cells)
     for (int corner = 0; corner < 4; ++corner) {
       const Node here = cell[corner], next = cell[(corner + 1) % 4];

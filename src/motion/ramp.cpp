@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "motion/observers/blow_up_monitor.hpp"
 #include "motion/observers/onsets.hpp"
 
@@ -102,7 +102,7 @@ class RampStates final : public Observer {
     e.shear_m = setup_.top_speed_m_per_s * stepper_.time_s();
     e.tractions.t_s_Pa = s.t_Pa;
     e.tractions.p_s_Pa = s.p_Pa;
-    double first = std::numeric_limits<double>::infinity(), last = -first;
+    double first = infinity, last = -first;
     for (std::size_t k = 0; k < s.size(); ++k) {
       e.contact[k] = s.p_Pa[k] > 0 ? (s.slipping[k] != 0 ? statics::Contact::slip : statics::Contact::stick)
                                    : statics::Contact::open;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/lanes.hpp"
+#include "base/numbers.hpp"
 
 namespace slipfront::motion {
 
@@ -87,7 +88,7 @@ void SlipFinder::locate_onset(SlipChange& onset, double time_s, const interface:
     auto& at = around[static_cast<std::size_t>(k + halo_)];
     const auto i = static_cast<std::ptrdiff_t>(node) + k;
     if (i < static_cast<std::ptrdiff_t>(first_) || i >= static_cast<std::ptrdiff_t>(end_)) {
-      at = {std::nan(""), std::nan("")};
+      at = {nan, nan};
       continue;
     }
     at = record::between({memory_.t_Pa[i], memory_.p_Pa[i]}, {state.t_Pa[i], state.p_Pa[i]}, part);

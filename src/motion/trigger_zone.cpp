@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "base/numbers.hpp"
 
 namespace slipfront::motion {
 
@@ -13,7 +14,7 @@ std::vector<std::size_t> trigger_zone(const statics::Equilibrium& state, interfa
   std::vector<std::size_t> zone;
   if (kind != interface::EventKind::left && kind != interface::EventKind::right) return zone;
   const auto in_contact = [&](std::size_t k) { return state.contact[k] != statics::Contact::open; };
-  double first = std::numeric_limits<double>::infinity(), last = -first;
+  double first = infinity, last = -first;
   for (std::size_t k = 0; k < x_m.size(); ++k) {
     if (!in_contact(k)) continue;
     first = std::min(first, x_m[k]);

@@ -6,7 +6,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "input/schema.hpp"
 #include "interface/friction.hpp"
 #include "python/arrays.hpp"
@@ -137,7 +137,7 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
                 nb::object progress) {
   input::Case config = given.config();
   config.friction.set_function(law_of(mu_of));
-  run_config(given, config, dir, false, 1, std::numeric_limits<double>::infinity(), std::move(progress));
+  run_config(given, config, dir, false, 1, infinity, std::move(progress));
 }
 
 void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress,

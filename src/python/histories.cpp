@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 
+#include "base/numbers.hpp"
 #include "fronts/from_history.hpp"
 
 namespace slipfront::python {
@@ -14,7 +14,7 @@ namespace {
 
 /// Nodes on each side of an onset whose tractions t_d and p_d may need.
 int halo_of(std::span<const double> x_m, double l_star_m) {
-  double smallest_m = std::numeric_limits<double>::infinity(), largest_m = 0;
+  double smallest_m = infinity, largest_m = 0;
   for (std::size_t k = 1; k < x_m.size(); ++k) {
     smallest_m = std::min(smallest_m, x_m[k] - x_m[k - 1]);
     largest_m = std::max(largest_m, x_m[k] - x_m[k - 1]);

@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "fronts/front.hpp"
 #include "input/schema.hpp"
 #include "papers/kammer2012/outcome.hpp"
@@ -36,7 +36,7 @@ void find_contact(const record::StaticState& state, double edge_margin_m, run::I
   const auto last = std::find_if(state.p_s_Pa.rbegin(), state.p_s_Pa.rend(), in_contact);
   common.inside_from_m = state.x_m[first - state.p_s_Pa.begin()] + edge_margin_m;
   common.inside_to_m = state.x_m[state.p_s_Pa.rend() - last - 1] - edge_margin_m;
-  common.peak_ratio = -std::numeric_limits<double>::infinity();
+  common.peak_ratio = -infinity;
   for (std::size_t k = 0; k < state.x_m.size(); ++k) {
     const double ratio = state.t_s_Pa[k] / state.p_s_Pa[k];
     const bool inside = state.x_m[k] >= common.inside_from_m && state.x_m[k] <= common.inside_to_m;

@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
 #include "motion/trigger_zone.hpp"
@@ -32,7 +32,7 @@ Message idle_trigger(const input::Case& config, const statics::Equilibrium& stat
   const auto& trigger = config.trigger;
   const auto zone = motion::trigger_zone(state, config.event, trigger.zone_m);
   const double direction = motion::load_direction(state, tributary_m, zone);
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (const auto k : zone)
     least = std::min(least, direction * state.tractions.t_s_Pa[k] / state.tractions.p_s_Pa[k] / mu_s[k]);
   const bool added = trigger.form == interface::TriggerForm::added;

@@ -91,12 +91,12 @@ Order order_of(const results::ResultFolder& folder) {
 void write_fields(const results::ResultFolder* folder, const input::Case& config, Processes& processes,
                   const std::function<void(const std::string&)>& note) {
   const bool is_in_rows = input::has_equal_elements(config), are_several = processes.size() > 1;
-  auto told = processes.from_root([&](MessageBuffer& to) {
+  auto message = processes.from_root([&](MessageBuffer& to) {
     const auto order = order_of(*folder);
     if (are_several && !order.file.empty()) files::write_text(order.sign, order.sign_text);
     to.append(packed(order));
   });
-  const auto order = unpacked<Order>(told);
+  const auto order = unpacked<Order>(message);
   if (order.file.empty()) return;
   if (is_in_rows && are_several && all_see(order, processes)) {
     try {

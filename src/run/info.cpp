@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/observers/onsets.hpp"
@@ -35,7 +35,7 @@ double mean_pressure_Pa(const input::Case& config, const mesh::Mesh& mesh) {
 record::StaticState expected_tractions(const input::Case& config, const mesh::Mesh& mesh,
                                        const std::vector<interface::FrictionLaw>& laws) {
   if (is_prestressed(config)) return prescribed_tractions(config.prestress, mesh);
-  double least_mu = std::numeric_limits<double>::infinity();
+  double least_mu = infinity;
   for (const auto& law : laws) least_mu = std::min(least_mu, interface::static_coefficient(law));
   const double p_Pa = nominal_pressure_Pa(config);
   return {interface_x_m(mesh), std::vector(laws.size(), least_mu * p_Pa), std::vector(laws.size(), p_Pa)};

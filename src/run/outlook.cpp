@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
 #include "run/choices.hpp"
 #include "statics/prestress.hpp"
@@ -190,8 +190,7 @@ RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) 
   auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});
   o.nominal = true;
   // S, and what follows from it, take the tractions along the interface.
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  o.of_nodes.S = o.of_nodes.drop_ratio = {unknown, unknown, unknown};
+  o.of_nodes.S = o.of_nodes.drop_ratio = {nan, nan, nan};
   o.of_nodes.supershear_half_length_m.reset();
   o.of_nodes.regime = "unknown before the statics give the tractions along the interface";
   o.doubts = doubts_of_growth(config, o);

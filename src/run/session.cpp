@@ -367,9 +367,9 @@ void require_unchanged(const std::string& table, const std::string& kept, const 
 Finished run_shared(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
                     const SessionHooks& hooks, bool resumed, std::unique_ptr<Checkpoints::Checkpoint> kept) {
   Session session(&folder, config, options, hooks, resumed);
-  auto told = packed(true, kept && kept->head.in_event);
-  pack_case(config, told);
-  options.processes->broadcast(std::move(told));
+  auto message = packed(true, kept && kept->head.in_event);
+  pack_case(config, message);
+  options.processes->broadcast(std::move(message));
   options.processes->set_awaited(true);
   auto finished = session.run(std::move(kept));
   options.processes->set_awaited(false);
@@ -417,10 +417,10 @@ void take_part(Processes& processes) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
     std::signal(signal, SIG_IGN);
   for (;;) try {
-      auto told = processes.broadcast({});
-      if (!unpacked<bool>(told)) return;
-      const bool in_event = unpacked<bool>(told);
-      const auto config = unpack_case(told);
+      auto message = processes.broadcast({});
+      if (!unpacked<bool>(message)) return;
+      const bool in_event = unpacked<bool>(message);
+      const auto config = unpack_case(message);
       SessionOptions options;
       options.processes = &processes;
       Session(nullptr, config, options, {}, false).run_beside(in_event);

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 
+#include "base/numbers.hpp"
 #include "results/folder.hpp"
 #include "run/run.hpp"
 
@@ -20,10 +20,10 @@ enum class Request {
 };
 
 struct SessionOptions {
-  std::optional<int> threads;                                     ///< by default suitable_threads
-  double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
-  double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
-  std::optional<std::string> shared_states;                       ///< folder of SharedStates, see there
+  std::optional<int> threads;                ///< by default suitable_threads
+  double keep_every_wall_s = 300;            ///< wall time between checkpoints
+  double keep_every_s = infinity;            ///< simulated time between them
+  std::optional<std::string> shared_states;  ///< folder of SharedStates, see there
   /// Makes further observers of the event, where it begins and where it goes on.
   std::function<motion::Observers()> observers;
   Processes* processes = &one_process();  ///< the ranks that share the event

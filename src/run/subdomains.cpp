@@ -101,7 +101,7 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
                                                                     InitialState& initial,
                                                                     Processes& processes,
                                                                     const motion::Execution& execution) {
-  auto told = processes.from_root([&](MessageBuffer& to) {
+  auto message = processes.from_root([&](MessageBuffer& to) {
     const GlobalBodies bodies(config, initial.mesh, initial.base);
     std::vector<const mesh::Mesh*> meshes;
     for (const auto& body : bodies.bodies()) meshes.push_back(&body.mesh);
@@ -113,8 +113,8 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
     plan.probes = probes_of(config, initial.mesh, initial.base);
     to.append(packed(plan, initial.mesh.grid, initial));
   });
-  const auto plan = unpacked<Plan>(told);
-  if (!processes.is_root()) MessageArchive::reader(told)(initial.mesh.grid, initial);
+  const auto plan = unpacked<Plan>(message);
+  if (!processes.is_root()) MessageArchive::reader(message)(initial.mesh.grid, initial);
   const auto rank = processes.rank();
   const auto& partition = plan.whole.partition;
   const Columns own(config, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
@@ -133,11 +133,11 @@ motion::Loads from_root(Processes& processes, const std::function<motion::Loads(
     archive(loads.prestress_t_Pa, loads.prestress_p_Pa, loads.trigger_force_N_per_m, loads.trigger,
             loads.intact);
   };
-  auto told = processes.from_root([&](MessageBuffer& to) {
+  auto message = processes.from_root([&](MessageBuffer& to) {
     loads = make();
     members(MessageArchive(to));
   });
-  members(MessageArchive::reader(told));
+  if (!processes.is_root()) members(MessageArchive::reader(message));
   return loads;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/numbers.hpp"
 #include "mesh/plate.hpp"
 #include "solid/element.hpp"
 #include "solid/operator.hpp"
@@ -42,7 +42,7 @@ mesh::Mesh part_of(const mesh::Mesh& mesh, const std::vector<bool>& in_part) {
 
 /// Of the squares.
 double smallest_side_m(const mesh::Mesh& mesh) {
-  double smallest_m = std::numeric_limits<double>::infinity();
+  double smallest_m = infinity;
   for (const auto& cell : mesh.cells) {
     if (!is_square(mesh, cell)) continue;
     const auto c = cell_coordinates(mesh, cell);
@@ -53,7 +53,7 @@ double smallest_side_m(const mesh::Mesh& mesh) {
 
 /// Of those on a row of nodes, as cell_coordinates has it.
 double smallest_side_of_interface_m(const mesh::Mesh& interface) {
-  double smallest_m = std::numeric_limits<double>::infinity();
+  double smallest_m = infinity;
   const auto look_at = [&](mesh::Node n, mesh::Node next) {
     const double x_m = interface.x_m[n];
     smallest_m = std::min(smallest_m, x_m + mesh::distance_x_m(interface, n, next) - x_m);

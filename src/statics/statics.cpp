@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "statics/load_case.hpp"
 
 namespace slipfront::statics {
@@ -123,7 +124,7 @@ class ContactProblem {
       at_1 += (this->*traction)(k, 1) * nodes.tributary_m[k];
     }
     const double growth = at_1 - at_0;
-    return growth > 0 ? (force_N_per_m - at_0) / growth : std::numeric_limits<double>::infinity();
+    return growth > 0 ? (force_N_per_m - at_0) / growth : infinity;
   }
 
   /// Corrects the states that the solution at `shear` contradicts; `may_slip(k)`: whether node k may pass
@@ -239,7 +240,7 @@ struct Inside {
 };
 
 Inside inside_contact(const ContactProblem& problem, double margin_m) {
-  double first = std::numeric_limits<double>::infinity(), last = -first;
+  double first = infinity, last = -first;
   for (std::size_t k = 0; k < problem.contact.size(); ++k) {
     if (problem.contact[k] == Contact::open) continue;
     first = std::min(first, problem.nodes.x_m[k]);
@@ -530,7 +531,7 @@ Equilibrium Statics::shear_to(double share) const {
     // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
     // that does not last until then is corrected, and the shear found again.
     const auto& mu_s = problem.states.support.mu_s;
-    double shear = std::numeric_limits<double>::infinity();
+    double shear = infinity;
     for (std::size_t k = 0; k < problem.contact.size(); ++k) {
       if (problem.contact[k] != Contact::stick || !inside.contains(problem.nodes.x_m[k])) continue;
       const double ratio = share * mu_s[k];
