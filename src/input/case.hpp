@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,8 @@ struct Case {
   Prestress prestress;
   interface::FrictionLaw friction;
   FrictionAlongX friction_along_x;
+  /// See interface::ContactModel; without it that of tip_slip_rate_m_per_s.
+  std::optional<double> tip_slip_rate_m_per_s;
   interface::Regularisation regularisation;
   interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
   interface::EventKind event = interface::EventKind::spontaneous;

@@ -13,6 +13,7 @@
 #include "files/fields.hpp"
 #include "files/text.hpp"
 #include "input/entries.hpp"
+#include "input/pressure.hpp"
 #include "input/random_field.hpp"
 #include "input/table_along_x.hpp"
 #include "mesh/plate.hpp"
@@ -175,11 +176,23 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
   return laws;
 }
 
+double tip_slip_rate_m_per_s(const Case& config) {
+  if (config.tip_slip_rate_m_per_s) return *config.tip_slip_rate_m_per_s;
+  const auto compliance = [](const solid::Material& m) {
+    return solid::shear_speed_m_per_s(m) / solid::shear_modulus_Pa(m);
+  };
+  double per_Pa = compliance(config.material);
+  if (has_base_body(config)) per_Pa += compliance(base_material(config));
+  return std::max(per_Pa * config.friction.parameter("a") * nominal_pressure_Pa(config),
+                  10 * config.friction.parameter("V_i_m_per_s"));
+}
+
 interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m,
                                       const mesh::Subset& places) {
   interface::ContactModel model {
     config.friction, config.regularisation, config.contact
   };
+  if (!config.friction.states().empty()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
   if (auto laws = places.of(friction_at(config, x_m)); !laws.empty())
     model.of_nodes = interface::NodeLaws(std::move(laws));
   return model;

@@ -20,6 +20,11 @@ FrictionTable read_friction_table(const std::filesystem::path& file, const inter
 /// parameters are not allowed.
 std::vector<interface::FrictionLaw> friction_at(const Case& config, const std::vector<double>& x_m);
 
+/// Slip rate beyond which a node under a law that never sticks counts as slipping: the case's, or where the
+/// direct effect a p/V is as steep as the bodies' radiation damping, at least 10 V_i.
+/// @pre the law has a state
+double tip_slip_rate_m_per_s(const Case& config);
+
 /// Contact and friction of some of the interface nodes at x_m.
 /// @throws UserError as friction_at
 interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m,

@@ -34,6 +34,29 @@ void check_friction(const Case& config) {
   throw UserError("friction: {} ({})", problem, values).about("friction.law");
 }
 
+/// What a law that never sticks cannot be combined with.
+void check_state(const Case& config) {
+  if (config.friction.states().empty()) return;
+  const Key law("friction.law");
+  const auto refuse = [&](const Key& key, const char* value, const char* instead) {
+    throw UserError("{} = {} asks whether nodes stick, which they never do under {} = {}; choose {}", key,
+                    value, law, config.friction.name(), instead)
+        .about(law.name);
+  };
+  if (config.contact == interface::ContactAlgorithm::predictor_corrector)
+    refuse(Key("contact.algorithm"), "predictor_corrector", "direct");
+  if (config.loading.method == statics::LoadingMethod::ramp)
+    refuse(Key("loading.method"), "ramp", "direct or prestress");
+  if (config.event == EventKind::nucleation && config.nucleation.form == interface::NucleationForm::weakened)
+    refuse(Key("nucleation.form"), "weakened", "overstress");
+  if (interface::is_at_edge(config.event) && config.trigger.form == interface::TriggerForm::weakened)
+    refuse(Key("event.trigger_form"), "weakened", "added or raised");
+  if (config.regularisation.relaxed == interface::Relaxed::strength)
+    throw UserError("{} = strength acts as pressure under {} = {}, whose coefficient has its own delay; choose pressure or none",
+                    Key("friction.regularisation"), law, config.friction.name())
+        .about(law.name);
+}
+
 /// How many nodes processes can number that have some of them each follows when they are known.
 void check_element_size(const Case& config) {
   constexpr double max_nodes = std::numeric_limits<mesh::Node>::max();
@@ -315,6 +338,7 @@ void check_relations(const Case& config, const Document& document) {
   check_trigger_zone(config);
   check_solver(config);
   check_base(config, document);
+  check_state(config);
   check_trigger(config);
   check_nucleation(config);
   check_fronts(config.fronts, config.plate);

@@ -32,7 +32,7 @@ struct LawState {
 /// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states.
 class FrictionLaw {
  public:
-  static constexpr std::size_t max_parameters = 4;
+  static constexpr std::size_t max_parameters = 8;
   using Lists = std::vector<std::vector<double>>;
 
   /// The registry's first law with its defaults.

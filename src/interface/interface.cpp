@@ -45,9 +45,9 @@ struct SomeLanes {
   }
 };
 
-template <ContactAlgorithm algorithm, bool remembers, class Place>
-Node<SimdVector> read_nodes(const Interface& s, Place at) {
-  Node<SimdVector> n{};
+template <ContactAlgorithm algorithm, bool remembers, std::size_t n_law_states, class Place>
+auto read_nodes(const Interface& s, Place at) {
+  Node<SimdVector, n_law_states> n{};
   n.initial_gap_m = at.read(s.initial_gap_m);
   n.mass_per_length_kg_m2 = at.read(s.mass_per_length_kg_m2);
   n.tangential_mass_ratio = at.read(s.tangential_mass_ratio);
@@ -63,17 +63,18 @@ Node<SimdVector> read_nodes(const Interface& s, Place at) {
     n.acceleration_m_per_s2 = at.read(s.acceleration_m_per_s2);
     n.locked = at.read(s.locked);
   }
+  for (std::size_t k = 0; k < n_law_states; ++k) n.law_states[k] = at.read(s.law_states[k]);
   return n;
 }
 
-template <ContactAlgorithm algorithm, bool remembers, class Place>
-void write_nodes(const Node<SimdVector>& n, Interface& s, Place at) {
+template <ContactAlgorithm algorithm, bool remembers, std::size_t n_law_states, class Place>
+void write_nodes(const Node<SimdVector, n_law_states>& n, Interface& s, Place at) {
   at.write(s.v_x_m_per_s, n.v_x_m_per_s);
   at.write(s.v_y_m_per_s, n.v_y_m_per_s);
   at.write(s.slip_rate_m_per_s, n.slip_rate_m_per_s);
   at.write(s.t_Pa, n.t_Pa);
   at.write(s.p_Pa, n.p_Pa);
-  at.write(s.trial_traction_Pa, n.trial_traction_Pa);
+  at.write(s.onset_ratio, n.onset_ratio);
   at.write(s.strength_Pa, n.strength_Pa);
   at.write(s.slipping, n.slipping);
   at.write(s.slip_m, n.slip_m);
@@ -86,16 +87,36 @@ void write_nodes(const Node<SimdVector>& n, Interface& s, Place at) {
     at.write(s.acceleration_m_per_s2, n.acceleration_m_per_s2);
     at.write(s.locked, n.locked);
   }
+  for (std::size_t k = 0; k < n_law_states; ++k) at.write(s.law_states[k], n.law_states[k]);
+}
+
+template <class Law>
+constexpr std::size_t n_states_of() {
+  if constexpr (HasState<Law>) return Law::states.size();
+  return 0;
 }
 
 /// A law of the registry, the same for all nodes or one for each.
 template <class Law>
 struct RegistryLaw {
   static constexpr SlipMemory memory = Law::memory;
+  static constexpr std::size_t n_states = n_states_of<Law>();
   const NodeLaws* of_nodes;  ///< null where all have the same
+  double tip_slip_rate_m_per_s;
   ConstantsOf<Law, SimdVector> constants;
+  RegistryLaw(const ContactModel& model, const Law& law)
+      : of_nodes(model.of_nodes.empty() ? nullptr : &model.of_nodes),
+        tip_slip_rate_m_per_s(model.tip_slip_rate_m_per_s),
+        constants(in_lanes(law)) {
+    set_tip();
+  }
   void go_to(std::size_t node) {
-    if (of_nodes) constants = of_nodes->constants<Law>(node / lanes);
+    if (!of_nodes) return;
+    constants = of_nodes->constants<Law>(node / lanes);
+    set_tip();
+  }
+  void set_tip() {
+    if constexpr (HasState<Law>) constants.tip_slip_rate_m_per_s = SimdVector{} + tip_slip_rate_m_per_s;
   }
 };
 
@@ -126,6 +147,7 @@ struct AskedInLanes {
 
 struct LawOverArrays {
   static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
+  static constexpr std::size_t n_states = 0;
   LawConstants<AskedInLanes, SimdVector> constants;
   void go_to(std::size_t node) { constants.mu = {constants.mu.answers, node}; }
 };
@@ -139,7 +161,7 @@ template <ContactAlgorithm algorithm, class Law, class Form>
   Law law = given;
   SimdMask changed{};
   const auto update_at = [&](auto at) {
-    auto nodes = read_nodes<algorithm, remembers>(s, at);
+    auto nodes = read_nodes<algorithm, remembers, Law::n_states>(s, at);
     law.go_to(at.begin);
     changed |= update_node<algorithm, Law::memory>(law.constants, form, dt_s, nodes);
     write_nodes<algorithm, remembers>(nodes, s, at);
@@ -193,6 +215,11 @@ void start_contact(const ContactModel& model, Interface& s) {
   });
   const auto states = model.law.states();
   for (std::size_t k = 0; k < s.law_states.size(); ++k) std::ranges::fill(s.law_states[k], states[k].initial);
+  visit(model.law, [&]<class Law>(const Law&) {
+    if constexpr (HasState<Law>)
+      for (std::size_t i = 0; i < s.size(); ++i)
+        s.law_states[0][i] = model.law_at(i).as<Law>().state_before(s.t_Pa[i], s.p_Pa[i]);
+  });
 }
 
 bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
@@ -206,11 +233,13 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
                  : update_by<ContactAlgorithm::predictor_corrector>(*law, mu_k, form, dt_s, state);
     });
   return visit(model.law, [&]<class Law>(const Law& one) {
-    const RegistryLaw<Law> law{model.of_nodes.empty() ? nullptr : &model.of_nodes, in_lanes(one)};
+    const RegistryLaw<Law> law(model, one);
     return with_form(model.regularisation, since_last_s, [&](const auto& form) {
-      return model.algorithm == ContactAlgorithm::direct
-                 ? update<ContactAlgorithm::direct>(law, form, dt_s, state)
-                 : update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
+      if constexpr (!HasState<Law>)
+        if (model.algorithm == ContactAlgorithm::predictor_corrector)
+          return update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
+      SLIPFRONT_ASSERT(model.algorithm == ContactAlgorithm::direct, "a state needs the direct algorithm");
+      return update<ContactAlgorithm::direct>(law, form, dt_s, state);
     });
   });
 }

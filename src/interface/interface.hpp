@@ -30,6 +30,8 @@ struct ContactModel {
   Regularisation regularisation = {};
   ContactAlgorithm algorithm = ContactAlgorithm::direct;
   NodeLaws of_nodes = {};  ///< instead of `law`, and of its type; empty where all nodes have that one
+  /// Under a law that never sticks a node counts as slipping beyond this slip rate.
+  double tip_slip_rate_m_per_s = 0.1;
 
   const FrictionLaw& law_at(std::size_t node) const { return of_nodes.empty() ? law : of_nodes[node]; }
 };
@@ -54,7 +56,9 @@ struct Interface {
   // The result of the contact update.
   std::vector<double> slip_rate_m_per_s;  ///< last half-step velocity along x; 0 where the node sticks
   std::vector<double> t_Pa, p_Pa;
-  std::vector<double> trial_traction_Pa;  ///< |t| that would stop the node
+  /// Passes 1 where a node begins to slip: |t| that would stop it over its strength; under a law that never
+  /// sticks its slip rate over ContactModel::tip_slip_rate_m_per_s. 0 of a node without strength.
+  std::vector<double> onset_ratio;
   /// Strength in the last update; of a node that begins to slip the one that it has overcome, of a node that
   /// sticks the one at rest, of an open node 0.
   std::vector<double> strength_Pa;
@@ -103,7 +107,7 @@ inline constexpr std::array<InterfaceField, 18> interface_fields = {{
     {"slip_rate", "m/s", FieldKind::memory, &Interface::slip_rate_m_per_s},
     {"t", "Pa", FieldKind::result, &Interface::t_Pa},
     {"p", "Pa", FieldKind::result, &Interface::p_Pa},
-    {"trial_traction", "Pa", FieldKind::trial, &Interface::trial_traction_Pa},
+    {"onset_ratio", "1", FieldKind::trial, &Interface::onset_ratio},
     {"strength", "Pa", FieldKind::trial, &Interface::strength_Pa},
     {"slipping", "1", FieldKind::memory, &Interface::slipping},
     {"slip", "m", FieldKind::memory, &Interface::slip_m},

@@ -1,25 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "base/lanes.hpp"
 #include "interface/friction/parameter.hpp"
 #include "interface/interface.hpp"
 #include "interface/regularisation.hpp"
+#include "interface/state_node.hpp"
 
 // The contact update of a node, or of `lanes` of them: written once for a value type V.
 namespace slipfront::interface {
 
 /// An entry of each array of Interface.
-template <class V>
+template <class V, std::size_t n_law_states = 0>
 struct Node {
   V initial_gap_m, mass_per_length_kg_m2, tangential_mass_ratio, intact;
   V v_x_m_per_s, v_y_m_per_s, u_y_m;
-  V slip_rate_m_per_s, t_Pa, p_Pa, trial_traction_Pa, strength_Pa;
+  V slip_rate_m_per_s, t_Pa, p_Pa, onset_ratio, strength_Pa;
   Mask<V> slipping;
   V slip_m;
   Memory<V> memory;
   V acceleration_m_per_s2;
   Mask<V> locked;
+  std::array<V, n_law_states> law_states;
 };
 
 /// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
@@ -29,16 +34,16 @@ inline V weakened(V mu, V mu_k, V intact) {
 }
 
 /// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
-template <class V>
-inline void press_direct(Node<V>& n, V impedance, double per_step) {
+template <class N, class V>
+inline void press_direct(N& n, V impedance, double per_step) {
   const V gap_rate = (n.initial_gap_m + n.u_y_m) * per_step;
   n.p_Pa = positive_part(-(n.v_y_m_per_s + gap_rate) * impedance);
   n.v_y_m_per_s += n.p_Pa / impedance;
 }
 
 /// Pressure of the predictor-corrector algorithm: what keeps the normal velocity of a locked node at zero.
-template <class V>
-inline void press_locked(Node<V>& n, V impedance, double per_step) {
+template <class N, class V>
+inline void press_locked(N& n, V impedance, double per_step) {
   const V v_y = n.v_y_m_per_s;
   const Mask<V> stays = n.locked && v_y <= 0;
   const Mask<V> lands = !n.locked && v_y + (n.initial_gap_m + n.u_y_m) * per_step < 0;
@@ -53,38 +58,29 @@ inline void press_locked(Node<V>& n, V impedance, double per_step) {
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
-/// @param law   LawConstants of the node
-/// @param form  one of with_form's
-/// @return whether the node began or ceased to slip.
-template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Law, class Form, class V>
-inline Mask<V> update_node(const Law& law, const Form& form, double dt_s, Node<V>& n) {
+/// Friction of a law by which nodes stick or slip.
+/// @param impedance_x  effective mass along x over tributary length and dt
+template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Mu, class Form, class V>
+inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
   const auto& [mu, mu_at_rest, mu_k] = law;
-  const double per_step = 1 / dt_s;
-
-  const V impedance = n.mass_per_length_kg_m2 * per_step;
-  if constexpr (predicts)
-    press_locked(n, impedance, per_step);
-  else
-    press_direct(n, impedance, per_step);
   const V p = n.p_Pa;
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
   const auto step = form.step(absolute(last_rate));
 
-  const V impedance_x = impedance * n.tangential_mass_ratio;
   const V v_trial = n.v_x_m_per_s;
   const V t_stop = v_trial * impedance_x;
-  n.trial_traction_Pa = absolute(t_stop);
-  V rate = last_rate, direction = t_stop, along = n.trial_traction_Pa;
+  const V trial_traction = absolute(t_stop);
+  V rate = last_rate, direction = t_stop, along = trial_traction;
   if constexpr (predicts) {
     // Newmark's predictor v + a dt of the velocity at the step's beginning.
     rate = last_rate + 0.5 * dt_s * n.acceleration_m_per_s2;
     // Friction opposes the motion: that of the trial, or, by the predictor, that of a node under way.
     const Mask<V> under_way = rate != 0 && p > 0;
     direction = select(under_way, rate, t_stop);
-    along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, n.trial_traction_Pa);
+    along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, trial_traction);
   }
   V strength{}, first_strength{}, t{}, v_x{};
   Mask<V> sticks{};
@@ -102,7 +98,6 @@ inline Mask<V> update_node(const Law& law, const Form& form, double dt_s, Node<V
     rate = mean_rate;
   }
   const Mask<V> slipping = !sticks && p > 0;
-  const Mask<V> changed = slipping != n.slipping;
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
@@ -110,15 +105,80 @@ inline Mask<V> update_node(const Law& law, const Form& form, double dt_s, Node<V
   if constexpr (slip_memory != SlipMemory::none) mu_stuck = mu(V{}, slip);
   const V strength_at_rest = form.strength(weakened(mu_stuck, mu_k, n.intact), p, now);
 
-  if constexpr (predicts) n.acceleration_m_per_s2 = select(sticks, V{}, (v_x - last_rate) * per_step);
+  if constexpr (predicts) n.acceleration_m_per_s2 = select(sticks, V{}, (v_x - last_rate) * (1 / dt_s));
   n.v_x_m_per_s = v_x;
   n.slip_rate_m_per_s = v_x;
   n.t_Pa = t;
   n.strength_Pa = select(sticks, strength_at_rest, select(n.slipping, strength, first_strength));
+  n.onset_ratio = select(n.strength_Pa > 0, trial_traction / n.strength_Pa, V{});
   n.slipping = slipping;
   n.slip_m = slip;
   n.memory = now;
-  return changed;
+}
+
+/// Friction of a law with a state, psi, that never sticks: the state of this time and the slip rate V at this
+/// time give t. V is between the half-step velocities before and after, w of the way: in the middle, which is
+/// of second order in dt, unless friction changes so steeply with V that the node would swing about its
+/// balance from step to step. There V is so much nearer to the end of the step that a linear law comes to its
+/// balance in one step; the fewer nodes are so stiff the shorter the step, and the order remains.
+template <ContactAlgorithm algorithm, SlipMemory, class Law, class Form, class V>
+inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, double dt_s, V impedance_x,
+                  Node<V, 1>& n) {
+  const auto& law = constants.law;
+  const Mask<V> in_contact = n.p_Pa > 0;
+  const V last_rate = n.slip_rate_m_per_s;
+  const Memory<V> now = form.now(form.step(absolute(last_rate)), n.memory, V{} + 1, n.p_Pa);
+  const V p = select(in_contact, form.strength(V{} + 1, n.p_Pa, now), V{} + 1);
+
+  V& psi = n.law_states[0];
+  const V v_trial = n.v_x_m_per_s;
+  const V a_p = law.a * p, s = psi / law.a;
+  const V knee = law.V0_m_per_s * exp_minus(s);  // beyond it t is a p ln V
+  const V stiffness = a_p / (absolute(last_rate) + knee);
+  V w = select(stiffness > 2 * impedance_x, 1 - impedance_x / stiffness, V{} + 0.5);
+  V t{}, v_x{}, rate{};
+  const auto solve = [&] {
+    rate = w * v_trial + (1 - w) * last_rate;
+    const V most = w * a_p / impedance_x;  // the slip rate that a traction a p takes
+    const V size = absolute(rate), least = law.V0_m_per_s * 1e-200;
+    const V log_trial = logarithm(select(size > least, size, least) / law.V0_m_per_s);
+    const V y = root_of_traction(size / most, law.V0_m_per_s / most, s, log_trial);
+    t = select(in_contact, copy_sign(a_p * y, rate), V{});
+    v_x = v_trial - t / impedance_x;
+  };
+  solve();
+  // Friction can stop the motion that the forces would give, not turn it round.
+  const Mask<V> turns = v_x * v_trial < 0;
+  if (any(turns)) {
+    w = select(turns, V{} + 1, w);
+    solve();
+  }
+  rate = w * v_x + (1 - w) * last_rate;
+  n.v_x_m_per_s = v_x;
+  n.slip_rate_m_per_s = v_x;
+  n.t_Pa = t;
+  n.strength_Pa = absolute(t);
+  n.onset_ratio = select(in_contact, absolute(rate) / constants.tip_slip_rate_m_per_s, V{});
+  n.slipping = !(n.onset_ratio <= 1);  // a motion that is not a number is seen as slip
+  n.slip_m += select(in_contact, absolute(v_x) * dt_s, V{});
+  n.memory = now;
+  psi = law.evolved(psi, absolute(v_x), dt_s);
+}
+
+/// @param law   ConstantsOf the node's law
+/// @param form  one of with_form's
+/// @return whether the node began or ceased to slip.
+template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Law, class Form, class N>
+inline auto update_node(const Law& law, const Form& form, double dt_s, N& n) {
+  const double per_step = 1 / dt_s;
+  const auto impedance = n.mass_per_length_kg_m2 * per_step;
+  if constexpr (algorithm == ContactAlgorithm::predictor_corrector)
+    press_locked(n, impedance, per_step);
+  else
+    press_direct(n, impedance, per_step);
+  const auto slipped = n.slipping;
+  slide<algorithm, slip_memory>(law, form, dt_s, impedance * n.tangential_mass_ratio, n);
+  return n.slipping != slipped;
 }
 
 }  // namespace slipfront::interface

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "base/lanes.hpp"
@@ -18,13 +19,26 @@ struct LawConstants {
   Coefficient mu;
   V mu_at_rest, mu_k;
 };
-template <class Law, class V>
-using ConstantsOf = LawConstants<typename Law::template Evaluator<V>, V>;
+/// The same of a law with a state, which never sticks.
+/// @tparam Evolving  the law's evaluator for V
+template <class Evolving, class V>
+struct StateLawConstants {
+  Evolving law;
+  V tip_slip_rate_m_per_s;  ///< see ContactModel
+};
+template <class Law>
+concept HasState = requires { Law::states; };
+template <class Law, class V, class Evaluator = typename Law::template Evaluator<V>>
+using ConstantsOf =
+    std::conditional_t<HasState<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
 
 template <class Law>
 ConstantsOf<Law, double> constants_of(const Law& law) {
-  const auto mu = law.evaluator();
-  return {mu, mu(0, 0), law.kinetic_coefficient()};
+  const auto evaluator = law.evaluator();
+  if constexpr (HasState<Law>)
+    return {evaluator, 0};
+  else
+    return {evaluator, evaluator(0, 0), law.kinetic_coefficient()};
 }
 /// The values of an aggregate of them.
 template <class V, class Constants>

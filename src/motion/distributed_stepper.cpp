@@ -305,8 +305,12 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
 void DistributedStepper::make_finder(const SlipFinder& whole) {
   const auto& known = whole.memory();
   const auto& places = own_places();
-  SlipFinder::Memory memory{known.time_s, places.of(known.t_Pa), places.of(known.p_Pa),
-                            places.of(known.strength_Pa), places.of(known.slipping)};
+  SlipFinder::Memory memory{known.time_s,
+                            places.of(known.t_Pa),
+                            places.of(known.p_Pa),
+                            places.of(known.strength_Pa),
+                            places.of(known.onset_ratio),
+                            places.of(known.slipping)};
   const auto own = stepper_->bodies().front().interface_side().own;
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   whole.halo(), whole.creep_m_per_s());
@@ -349,6 +353,7 @@ StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_s
   append_own(memory.t_Pa, 0, report.memory.t_Pa);
   append_own(memory.p_Pa, 0, report.memory.p_Pa);
   append_own(memory.strength_Pa, 0, report.memory.strength_Pa);
+  append_own(memory.onset_ratio, 0, report.memory.onset_ratio);
   append_own(memory.slipping, 0, report.memory.slipping);
   for (std::size_t f = 0; f < report.samples.size(); ++f)
     for (std::size_t row = 0; row < samples.time_s.size(); ++row)

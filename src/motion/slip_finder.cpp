@@ -32,8 +32,11 @@ SlipFinder::SlipFinder(const statics::Equilibrium& before, const PerNode& mu_s, 
     : end_(before.contact.size()), halo_(halo), creep_m_per_s_(creep_m_per_s) {
   memory_.t_Pa = before.tractions.t_s_Pa;
   memory_.p_Pa = before.tractions.p_s_Pa;
-  for (std::size_t i = 0; i < memory_.p_Pa.size(); ++i)
-    memory_.strength_Pa.push_back(mu_s[i] * memory_.p_Pa[i]);
+  for (std::size_t i = 0; i < memory_.p_Pa.size(); ++i) {
+    const double strength_Pa = mu_s[i] * memory_.p_Pa[i];
+    memory_.strength_Pa.push_back(strength_Pa);
+    memory_.onset_ratio.push_back(strength_Pa > 0 ? std::abs(memory_.t_Pa[i]) / strength_Pa : 0);
+  }
   for (const auto contact : before.contact) memory_.slipping.push_back(contact == statics::Contact::slip);
   count_slipping();
 }
@@ -69,19 +72,19 @@ void SlipFinder::find(double time_s, const interface::Interface& state, bool cha
   std::ranges::copy(state.t_Pa, memory_.t_Pa.begin());
   std::ranges::copy(state.p_Pa, memory_.p_Pa.begin());
   std::ranges::copy(state.strength_Pa, memory_.strength_Pa.begin());
+  std::ranges::copy(state.onset_ratio, memory_.onset_ratio.begin());
   memory_.time_s = time_s;
 }
 
 void SlipFinder::locate_onset(SlipChange& onset, double time_s, const interface::Interface& state,
                               std::span<record::Traction> around) const {
   const auto node = static_cast<std::size_t>(onset.node);
-  // |t| / strength passes 1 between the last time and this one; a node without strength, open or not, has no
-  // ratio to interpolate and begins to slip now.
+  // The ratio passes 1 between the last time and this one; a node without strength, open or not, has none to
+  // interpolate and begins to slip now.
   double part = 1;
   const double strength_before = memory_.strength_Pa[node], strength_now = state.strength_Pa[node];
   if (strength_before > 0 && strength_now > 0 && time_s > memory_.time_s) {
-    const double before = std::abs(memory_.t_Pa[node]) / strength_before;
-    const double now = state.trial_traction_Pa[node] / strength_now;
+    const double before = memory_.onset_ratio[node], now = state.onset_ratio[node];
     if (now > before) part = std::clamp((1 - before) / (now - before), 0.0, 1.0);
   }
   for (int k = -halo_; k <= halo_; ++k) {
@@ -102,7 +105,8 @@ void SlipFinder::locate_onset(SlipChange& onset, double time_s, const interface:
 
 void SlipFinder::archive(StateArchive& archive) {
   archive(memory_.time_s);
-  for (auto* values : {&memory_.t_Pa, &memory_.p_Pa, &memory_.strength_Pa}) archive_vector(archive, *values);
+  for (auto* values : {&memory_.t_Pa, &memory_.p_Pa, &memory_.strength_Pa, &memory_.onset_ratio})
+    archive_vector(archive, *values);
   archive_vector(archive, memory_.slipping);
   if (archive.is_loading()) count_slipping();
 }

@@ -53,11 +53,11 @@ class SlipFinder {
   /// What it knows of the last update, [nodes] each.
   struct Memory {
     double time_s = 0;
-    std::vector<double> t_Pa, p_Pa, strength_Pa;
+    std::vector<double> t_Pa, p_Pa, strength_Pa, onset_ratio;
     std::vector<std::uint8_t> slipping;
     template <class Archive>
     void serialize(Archive& archive) {
-      archive(time_s, t_Pa, p_Pa, strength_Pa, slipping);
+      archive(time_s, t_Pa, p_Pa, strength_Pa, onset_ratio, slipping);
     }
   };
 

@@ -97,6 +97,7 @@ StepReport StepReport::joined(std::vector<MessageBuffer> of_subdomains) {
     append(all.memory.t_Pa, subdomain.memory.t_Pa);
     append(all.memory.p_Pa, subdomain.memory.p_Pa);
     append(all.memory.strength_Pa, subdomain.memory.strength_Pa);
+    append(all.memory.onset_ratio, subdomain.memory.onset_ratio);
     append(all.memory.slipping, subdomain.memory.slipping);
     all.is_interrupted = all.is_interrupted || subdomain.is_interrupted;
   }

@@ -68,19 +68,6 @@ statics::StaticSolver wanted_solver(const input::Case& config) {
   return statics::solver_for_shapes(config.loading.solver, shape(config.plate), base);
 }
 
-double nominal_pressure_Pa(const input::Case& config) {
-  const double width_m = config.plate.width_m;
-  if (const auto force = statics::normal_force_N_per_m(config.loading, width_m)) return *force / width_m;
-  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
-  double per_compression = stability::nominal_pressure_Pa(config.material, 1, config.plate.height_m);
-  if (input::has_base_body(config)) {
-    const double of_base =
-        stability::nominal_pressure_Pa(input::base_material(config), 1, config.base.plate.height_m);
-    per_compression *= of_base / (per_compression + of_base);
-  }
-  return compression_m * per_compression;
-}
-
 bool is_plain(const input::Case& config) {
   return config.time.stepper == motion::StepperKind::plain;
 }

@@ -37,10 +37,6 @@ stability::Bodies bodies_of(const input::Case& config);
 /// What the plate's shape leaves of loading.solver.
 statics::StaticSolver wanted_solver(const input::Case& config);
 
-/// Mean pressure of the interface: of the normal force where the case gives it, else under the tilt, the
-/// bodies' sides free; a base takes its share of the compression.
-double nominal_pressure_Pa(const input::Case& config);
-
 /// Whether steps are computed as the scheme is written.
 bool is_plain(const input::Case& config);
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <future>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "base/clock.hpp"
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
+#include "input/pressure.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
@@ -25,19 +25,13 @@ namespace slipfront::run {
 
 namespace {
 
-double mean_pressure_Pa(const input::Case& config, const mesh::Mesh& mesh) {
-  if (!is_prestressed(config)) return nominal_pressure_Pa(config);
-  const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
-  return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
-}
-
 /// Tractions before the event; under a tilt those of the nominal pressure when the weakest node slips.
 record::StaticState expected_tractions(const input::Case& config, const mesh::Mesh& mesh,
                                        const std::vector<interface::FrictionLaw>& laws) {
   if (is_prestressed(config)) return prescribed_tractions(config.prestress, mesh);
   double least_mu = infinity;
   for (const auto& law : laws) least_mu = std::min(least_mu, interface::static_coefficient(law));
-  const double p_Pa = nominal_pressure_Pa(config);
+  const double p_Pa = input::nominal_pressure_Pa(config);
   return {interface_x_m(mesh), std::vector(laws.size(), least_mu * p_Pa), std::vector(laws.size(), p_Pa)};
 }
 
@@ -83,7 +77,7 @@ bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness&
 }
 
 void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
-  const double pressure_Pa = mean_pressure_Pa(config, mesh);
+  const double pressure_Pa = input::nominal_pressure_Pa(config);
   const auto of = [&](const interface::FrictionLaw& law) {
     return stability::well_posedness(bodies_of(config), law, pressure_Pa, config.plate.element_size_m,
                                      config.plate.width_m, config.regularisation);

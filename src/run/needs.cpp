@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "input/pressure.hpp"
 #include "interface/friction.hpp"
 #include "mesh/plate.hpp"
 #include "motion/every.hpp"
@@ -102,7 +103,7 @@ double critical_shear_m(const input::Case& config) {
     compliance_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(config.base.material);
   } catch (const UserError&) {  // nothing coarse fits, or its edges give way first
   }
-  return mu_s * nominal_pressure_Pa(config) * compliance_m_per_Pa;
+  return mu_s * input::nominal_pressure_Pa(config) * compliance_m_per_Pa;
 }
 
 double rows_of(double end_s, double interval_s, double step_s) {

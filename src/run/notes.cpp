@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input/pressure.hpp"
 #include "input/table_along_x.hpp"
 #include "run/choices.hpp"
 #include "run/snapshot_plan.hpp"
@@ -79,7 +80,7 @@ void add_odd_pressures(const input::Case& config, Notes& notes) {
   constexpr double min_strain = 1e-7;  // a rock pressed by its own weight over some centimetres
   const double E_Pa = config.material.youngs_modulus_Pa;
   if (!is_prestressed(config)) {
-    const double strain = nominal_pressure_Pa(config) / E_Pa;
+    const double strain = input::nominal_pressure_Pa(config) / E_Pa;
     if (strain > max_strain)
       notes.push_back(fmt::format(
           "the {} the plate by {:.3g} of Young's modulus, beyond small strains: {}?",

@@ -9,6 +9,7 @@
 
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
+#include "input/pressure.hpp"
 #include "run/choices.hpp"
 #include "statics/prestress.hpp"
 
@@ -185,7 +186,7 @@ RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) 
   if (is_prestressed(config))
     return rupture_outlook(
         config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)));
-  const double p_Pa = nominal_pressure_Pa(config);
+  const double p_Pa = input::nominal_pressure_Pa(config);
   const double strength_Pa = interface::static_coefficient(config.friction) * p_Pa;
   auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});
   o.nominal = true;

@@ -15,6 +15,12 @@ double longitudinal_modulus_Pa(const Material& m) {
                                   : m.youngs_modulus_Pa * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
 }
 
+double uniaxial_modulus_Pa(const Material& m) {
+  const double P = longitudinal_modulus_Pa(m);
+  const double G = shear_modulus_Pa(m);
+  return 4 * G * (P - G) / P;
+}
+
 double longitudinal_speed_m_per_s(const Material& m) {
   return std::sqrt(longitudinal_modulus_Pa(m) / m.density_kg_per_m3);
 }

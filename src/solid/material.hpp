@@ -19,6 +19,8 @@ struct Material {
 double shear_modulus_Pa(const Material& material);
 /// Stiffness of uniaxial strain within the plane: rho c_L^2.
 double longitudinal_modulus_Pa(const Material& material);
+/// Stiffness of uniaxial stress within the plane: E in plane stress, E/(1 - nu^2) in plane strain.
+double uniaxial_modulus_Pa(const Material& material);
 double longitudinal_speed_m_per_s(const Material& material);  ///< c_L in the plane chosen
 double shear_speed_m_per_s(const Material& material);         ///< c_S
 double rayleigh_speed_m_per_s(const Material& material);      ///< c_R, root of the Rayleigh function

@@ -161,11 +161,4 @@ double damping_of_grid_waves_s(const Bodies& bodies, const interface::FrictionLa
   return (weakens_with_rate ? 0.35 : 0.1) * element_size_m / c_S;
 }
 
-double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m) {
-  const double P = solid::longitudinal_modulus_Pa(material);
-  const double G = solid::shear_modulus_Pa(material);
-  // Stiffness of uniaxial stress within the plane: E in plane stress, E/(1 - nu^2) in plane strain.
-  return 4 * G * (P - G) / P * mean_compression_m / height_m;
-}
-
 }  // namespace slipfront::stability

@@ -48,7 +48,4 @@ bool growth_is_unbounded(const Bodies& bodies, const Sliding& sliding);
 double damping_of_grid_waves_s(const Bodies& bodies, const interface::FrictionLaw& law,
                                const interface::Regularisation& regularisation, double element_size_m);
 
-/// Mean pressure of a plate of a height whose top is pushed down by a mean amount, its sides free.
-double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m);
-
 }  // namespace slipfront::stability

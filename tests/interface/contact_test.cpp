@@ -29,7 +29,7 @@ TEST(Contact, FrictionStopsANodeWhereItCan) {
     EXPECT_FALSE(pull(model, s, sign * 1.2e6, 1e6));
     EXPECT_NEAR(s.p_Pa[0], 1e6, 1e-8);
     EXPECT_NEAR(s.t_Pa[0], sign * 1.2e6, 1e-8);
-    EXPECT_NEAR(s.trial_traction_Pa[0], 1.2e6, 1e-8);
+    EXPECT_NEAR(s.onset_ratio[0], 1.2 / 1.3, 1e-14);
     EXPECT_EQ(s.v_x_m_per_s[0], 0);
     EXPECT_EQ(s.slip_rate_m_per_s[0], 0);
     EXPECT_EQ(s.slipping[0], 0);
@@ -45,7 +45,7 @@ TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
     const double first = strength_under_way(weakening_mu, 0, 1.5e6, 1e6);
     EXPECT_LT(first, 1.2e6);
     EXPECT_NEAR(s.t_Pa[0], sign * first, 1e-8);
-    EXPECT_NEAR(s.trial_traction_Pa[0], 1.5e6, 1e-8);
+    EXPECT_NEAR(s.onset_ratio[0], 1.5 / 1.3, 1e-14);
     EXPECT_EQ(s.slipping[0], 1);
     EXPECT_NEAR(s.v_x_m_per_s[0], sign * (1.5e6 - first) / impedance, 1e-14);
     EXPECT_EQ(s.slip_rate_m_per_s[0], s.v_x_m_per_s[0]);

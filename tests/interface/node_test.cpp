@@ -63,7 +63,7 @@ bool update_one_by_one(const Law& law, const Form& form, Interface& s) {
       f(n.slip_rate_m_per_s, s.slip_rate_m_per_s);
       f(n.t_Pa, s.t_Pa);
       f(n.p_Pa, s.p_Pa);
-      f(n.trial_traction_Pa, s.trial_traction_Pa);
+      f(n.onset_ratio, s.onset_ratio);
       f(n.strength_Pa, s.strength_Pa);
       f(n.slipping, s.slipping);
       f(n.slip_m, s.slip_m);

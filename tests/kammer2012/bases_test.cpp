@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "run/choices.hpp"
+#include "input/pressure.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::kammer2012 {
 namespace {
 
 TEST(Bases, HaveThePapersNominalPressure) {
-  const double wanted_Pa = run::nominal_pressure_Pa(paper_cases(true).front().config);
+  const double wanted_Pa = input::nominal_pressure_Pa(paper_cases(true).front().config);
   for (const auto& base : base_options())
     for (const auto& c : cases_on(base, true)) {
-      EXPECT_NEAR(run::nominal_pressure_Pa(c.config), wanted_Pa, 1e-2 * wanted_Pa) << base.name;
+      EXPECT_NEAR(input::nominal_pressure_Pa(c.config), wanted_Pa, 1e-2 * wanted_Pa) << base.name;
       EXPECT_EQ(input::has_base_body(c.config), base.material.has_value());
       EXPECT_NO_THROW(run::check(c.config));
     }

@@ -47,6 +47,13 @@ TEST(Material, RayleighSpeedWhereItHasAClosedForm) {
   EXPECT_NEAR(ratio({.poissons_ratio = 0, .plane = Plane::stress}), two, 1e-12);
 }
 
+TEST(Material, UniaxialStressIsThatOfAFreeColumn) {
+  Material m;
+  EXPECT_NEAR(uniaxial_modulus_Pa(m), 2.6e9, 1e-3);
+  m.plane = Plane::strain;
+  EXPECT_NEAR(uniaxial_modulus_Pa(m), 2.6e9 / (1 - 0.37 * 0.37), 1e-3);
+}
+
 TEST(Material, ElasticityInvertsTheCompliance) {
   for (const auto plane : {Plane::stress, Plane::strain}) {
     const Material m{.poissons_ratio = 0.31, .plane = plane};

@@ -94,12 +94,5 @@ TEST(WellPosedness, DampingAloneDoesNotResolveStrongWeakening) {
   EXPECT_THAT(w.statement, StartsWith("bounded, not resolved"));
 }
 
-TEST(NominalPressure, IsThatOfAFreeColumn) {
-  solid::Material m;
-  EXPECT_NEAR(nominal_pressure_Pa(m, 0.2035e-3, 0.1), 2.6e9 * 0.2035e-3 / 0.1, 1e-3);
-  m.plane = solid::Plane::strain;
-  EXPECT_NEAR(nominal_pressure_Pa(m, 1e-4, 0.1), 2.6e9 / (1 - 0.37 * 0.37) * 1e-3, 1e-3);
-}
-
 }  // namespace
 }  // namespace slipfront::stability

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/exponential.hpp"
+#include "base/lanes.hpp"
+#include "base/logarithm.hpp"
+#include "base/message.hpp"
+#include "interface/friction/parameter.hpp"
+
+namespace slipfront::interface {
+
+/// How psi changes while the surfaces slide at V.
+enum class StateEvolution {
+  aging,  ///< psi = f0 + b ln(V0 theta/d_c), d theta/dt = 1 - V theta/d_c (Dieterich 1979)
+  slip,   ///< d psi/dt = -V/d_c (psi - psi_ss(V)), the slip law d theta/dt = -(V theta/d_c) ln(V theta/d_c)
+          ///< (Ruina 1983)
+  strong_weakening,  ///< as slip, towards a steady coefficient that falls to f_w beyond V_w
+};
+
+/// tau = p a asinh[V/(2 V0) exp(psi/a)]: rate-and-state friction, regularised so that it is odd in V (Rice et
+/// al. 2001). It never sticks. In steady sliding the coefficient is f0 + (a - b) ln(V/V0), for large arguments;
+/// with strong weakening f_w + (that - f_w) [1 + (V/V_w)^8]^(-1/8) (Dunham et al. 2011).
+template <StateEvolution evolution>
+struct RateAndState {
+  static constexpr bool weakens_strongly = evolution == StateEvolution::strong_weakening;
+  static constexpr const char* name = evolution == StateEvolution::aging  ? "rate_and_state_aging"
+                                      : evolution == StateEvolution::slip ? "rate_and_state_slip"
+                                                                          : "rate_and_state_strong";
+  static constexpr const char* help =
+      evolution == StateEvolution::aging  ? "rate and state, aging law; never sticks"
+      : evolution == StateEvolution::slip ? "rate and state, slip law; never sticks"
+                                          : "rate and state, slip law with strong rate weakening";
+  static constexpr SlipMemory memory = SlipMemory::none;
+  static constexpr std::array<LawState, 1> states = {{{"psi", "1", 0}}};
+
+  double a = 0.008;
+  double b = 0.016;
+  double d_c_m = 0.4e-6;
+  double f0 = 0.6;
+  double V0_m_per_s = 1e-6;
+  double V_i_m_per_s = 1e-9;
+  double f_w = 0.2;
+  double V_w_m_per_s = 0.1;
+
+  static constexpr auto parameters() {
+    using L = RateAndState;
+    constexpr std::array<Parameter<L>, 8> all = {
+        {{"a", &L::a, 1e-6, 10, "direct effect of the slip rate"},
+         {"b", &L::b, 1e-6, 10, "effect of the state"},
+         {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which the state changes"},
+         {"f0", &L::f0, 0, 100, "coefficient of steady sliding at V0"},
+         {"V0_m_per_s", &L::V0_m_per_s, 1e-12, 1e3, "reference slip rate"},
+         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-12, 1e3, "slip rate before the event"},
+         {"f_w", &L::f_w, 0, 100, "coefficient of steady sliding far beyond V_w"},
+         {"V_w_m_per_s", &L::V_w_m_per_s, 1e-12, 1e3, "slip rate from which friction weakens"}}};
+    std::array<Parameter<L>, weakens_strongly ? 8 : 6> used{};
+    std::copy_n(all.begin(), used.size(), used.begin());
+    return used;
+  }
+  Message inconsistency() const { return {}; }
+
+  /// The law with its constants folded. An aggregate of values V.
+  template <class V>
+  struct Evaluator {
+    V a, b, f0, V0_m_per_s, per_d_c_per_m, f_w, per_V_w_s_per_m;
+
+    /// The coefficient of steady sliding, V > 0.
+    V steady_coefficient(V speed_m_per_s) const {
+      const V f = f0 + (a - b) * logarithm(speed_m_per_s / V0_m_per_s);
+      if constexpr (!weakens_strongly) return f;
+      // Beyond 1e3 V_w the 1 does not count, and powers stay in range.
+      const V v = speed_m_per_s * per_V_w_s_per_m;
+      const V v2 = v * v, v4 = v2 * v2, v8 = select(v < 1e30, v4 * v4, V{} + 1e240);
+      return f_w + (f - f_w) * exp_minus(0.125 * logarithm(1 + v8));
+    }
+    /// psi of steady sliding, V > 0.
+    V steady_state(V speed_m_per_s) const {
+      const V log_V = logarithm(speed_m_per_s / V0_m_per_s);
+      if constexpr (!weakens_strongly) return f0 - b * log_V;
+      return state_of(steady_coefficient(speed_m_per_s), log_V);
+    }
+    /// psi at which sliding with ln(V/V0) has a coefficient tau/p > 0: a ln[2 V0/V sinh(tau/(a p))].
+    V state_of(V coefficient, V log_V) const {
+      const V y = coefficient / a;
+      return coefficient + a * (logarithm(decay(2 * y).lost) - log_V);
+    }
+    /// psi after a time in which the surfaces slide at |V|: exact.
+    V evolved(V psi, V speed_m_per_s, double dt_s) const {
+      const auto [left, lost] = decay(speed_m_per_s * dt_s * per_d_c_per_m);
+      constexpr double at_rest = 1e-150;
+      const V speed = select(speed_m_per_s < at_rest, V{} + at_rest, speed_m_per_s);
+      if constexpr (evolution != StateEvolution::aging) {
+        const V steady = steady_state(speed);
+        return steady + (psi - steady) * left;
+      }
+      // Of V0 theta/d_c; lost / V is dt/d_c at rest.
+      const V grown = select(lost > 1e-140, V0_m_per_s * lost / speed, V0_m_per_s * per_d_c_per_m * dt_s);
+      return f0 + b * logarithm(exp_minus((f0 - psi) / b) * left + grown);
+    }
+
+    // Steady sliding, for those who ask for a coefficient without a state.
+    V operator()(V speed_m_per_s, V /*slip_m*/) const { return steady_coefficient(speed_m_per_s); }
+    V slope_s_per_m(V speed_m_per_s, V slip_m) const {
+      const double small = 1e-4;
+      return ((*this)(speed_m_per_s * (1 + small), slip_m) - (*this)(speed_m_per_s * (1 - small), slip_m)) /
+             (2 * small * speed_m_per_s);
+    }
+  };
+  Evaluator<double> evaluator() const { return {a, b, f0, V0_m_per_s, 1 / d_c_m, f_w, 1 / V_w_m_per_s}; }
+
+  /// psi where a node that slides at V_i has t and p; of steady sliding where it is open or has no t.
+  double state_before(double t_Pa, double p_Pa) const {
+    const auto law = evaluator();
+    if (!(p_Pa > 0) || t_Pa == 0) return law.steady_state(V_i_m_per_s);
+    return law.state_of(std::abs(t_Pa) / p_Pa, std::log(V_i_m_per_s / V0_m_per_s));
+  }
+
+  /// Of steady sliding as before the event.
+  double static_coefficient() const { return evaluator().steady_coefficient(V_i_m_per_s); }
+  /// Of steady sliding at 1 m/s.
+  double kinetic_coefficient() const { return evaluator().steady_coefficient(1); }
+};
+
+using RateAndStateAging = RateAndState<StateEvolution::aging>;
+using RateAndStateSlip = RateAndState<StateEvolution::slip>;
+using RateAndStateStrong = RateAndState<StateEvolution::strong_weakening>;
+
+}  // namespace slipfront::interface
