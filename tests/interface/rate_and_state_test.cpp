@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interface/friction/rate_and_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "interface/node_laws.hpp"
+#include "one_node.hpp"
+
+namespace slipfront::interface {
+namespace {
+
+using test::dt;
+using test::impedance;
+
+constexpr double p_Pa = 5e6;
+
+double coefficient_of(const auto& law, double V, double psi) {
+  return law.a * std::asinh(V / (2 * law.V0_m_per_s) * std::exp(psi / law.a));
+}
+
+TEST(RootOfTraction, SolvesItsEquationAtAllScales) {
+  std::mt19937_64 random(1);
+  const auto power_of_10 = [&](double from, double to) {
+    return std::pow(10, std::uniform_real_distribution<double>(from, to)(random));
+  };
+  double worst = 0;
+  for (int n = 0; n < 200000; ++n) {
+    const double Y = power_of_10(-12, 5), k = power_of_10(-15, 6);
+    const double s = std::uniform_real_distribution<double>(-20, 300)(random);
+    const double y = root_of_traction(Y, k, s, std::log(Y / k));
+    const double f = y + 2 * k * std::exp(-s) * std::sinh(y) - Y;
+    const double slope = 1 + 2 * k * std::exp(-s) * std::cosh(y);
+    ASSERT_GE(y, 0);
+    ASSERT_LE(y, Y);
+    worst = std::max(worst, std::abs(f / slope) / std::max(1.0, y));
+  }
+  EXPECT_LT(worst, 1e-13);
+}
+
+template <class Law>
+class RateAndStateLaws : public testing::Test {};
+using Laws = testing::Types<RateAndStateAging, RateAndStateSlip, RateAndStateStrong>;
+TYPED_TEST_SUITE(RateAndStateLaws, Laws);
+
+TYPED_TEST(RateAndStateLaws, StartWithTheGivenTractionAndSlipRate) {
+  const TypeParam law;
+  for (const double t_Pa : {2.65e6, 1e3, 4e6}) {
+    const double psi = law.state_before(t_Pa, p_Pa);
+    EXPECT_NEAR(coefficient_of(law, law.V_i_m_per_s, psi), t_Pa / p_Pa, 1e-13);
+  }
+  const double steady = law.state_before(0, 0);
+  EXPECT_NEAR(coefficient_of(law, law.V_i_m_per_s, steady), law.static_coefficient(), 1e-13);
+}
+
+TYPED_TEST(RateAndStateLaws, EvolveExactlyAtConstantSlipRate) {
+  const TypeParam law;
+  const auto e = law.evaluator();
+  for (const double V : {1e-9, 1e-3, 2.0}) {
+    // One long step is many short ones, and ends in steady sliding.
+    const double long_s = 3 * law.d_c_m / V;
+    double psi = 0.7;
+    for (int n = 0; n < 100; ++n) psi = e.evolved(psi, V, long_s / 100);
+    EXPECT_NEAR(psi, e.evolved(0.7, V, long_s), 1e-13);
+    EXPECT_NEAR(e.evolved(0.7, V, 100 * long_s), e.steady_state(V), 1e-13);
+    EXPECT_NEAR(coefficient_of(law, V, e.steady_state(V)), e.steady_coefficient(V), 1e-13);
+  }
+}
+
+TEST(RateAndState, AgesByTheTimeAtRest) {
+  const RateAndStateAging law;
+  const auto e = law.evaluator();
+  const auto theta_s = [&](double psi) { return law.d_c_m / law.V0_m_per_s * std::exp((psi - law.f0) / law.b); };
+  EXPECT_NEAR(theta_s(e.evolved(0.65, 0, 4.0)), theta_s(0.65) + 4, 1e-11);
+  const RateAndStateSlip slip;
+  EXPECT_EQ(slip.evaluator().evolved(0.65, 0, 4.0), 0.65);
+}
+
+TEST(RateAndState, AVelocityStepJumpsByAAndFallsByB) {
+  const double factor = 10, V = 1e-6;
+  const RateAndStateSlip law;
+  const auto e = law.evaluator();
+  const double psi = e.steady_state(V);
+  EXPECT_NEAR(coefficient_of(law, factor * V, psi) - e.steady_coefficient(V), law.a * std::log(factor), 1e-12);
+  for (const double slip_m : {0.1e-6, 0.4e-6, 2e-6}) {
+    const double after = coefficient_of(law, factor * V, e.evolved(psi, factor * V, slip_m / (factor * V)));
+    EXPECT_NEAR(after - e.steady_coefficient(factor * V),
+                law.b * std::log(factor) * std::exp(-slip_m / law.d_c_m), 1e-12);
+  }
+}
+
+TEST(RateAndState, FallsToFWBeyondVW) {
+  const RateAndStateStrong law;
+  const auto e = law.evaluator();
+  EXPECT_NEAR(e.steady_coefficient(1e-6), 0.6, 1e-12);
+  const double V = 1, low = 0.6 - 0.008 * std::log(V / 1e-6);
+  EXPECT_NEAR(e.steady_coefficient(V), 0.2 + (low - 0.2) / std::pow(1 + 1e8, 0.125), 1e-12);
+  EXPECT_NEAR(e.steady_coefficient(1e300), 0.2, 1e-9);
+}
+
+/// Nodes that are pushed to any slip rate, some of them open.
+TYPED_TEST(RateAndStateLaws, BalanceTheNode) {
+  const TypeParam law;
+  const ContactModel model{law};
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> power(-12, 1), part(-1, 1);
+  Interface s(101, model.law.states());
+  std::ranges::fill(s.mass_per_length_kg_m2, test::mass);
+  std::ranges::fill(s.p_Pa, p_Pa);
+  for (auto& t : s.t_Pa) t = 2.5e6;
+  start_contact(model, s);
+  for (int n = 0; n < 200; ++n) {
+    const auto before = s;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      s.v_x_m_per_s[i] = std::copysign(std::pow(10, power(random)), part(random)) + 2.6e6 / impedance;
+      s.v_y_m_per_s[i] = -(i % 10 == 3 ? -1 : 1) * p_Pa * (1 + 0.1 * part(random)) / impedance;
+    }
+    const auto trial = s;
+    update_contact(model, dt, s);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const double t = s.t_Pa[i], v = s.v_x_m_per_s[i], psi = before.law_states[0][i];
+      ASSERT_NEAR(t, (trial.v_x_m_per_s[i] - v) * impedance, 1e-7);
+      ASSERT_NEAR(s.law_states[0][i], law.evaluator().evolved(psi, std::abs(v), dt), 1e-15);
+      if (s.p_Pa[i] == 0) {
+        ASSERT_EQ(t, 0);
+        continue;
+      }
+      // t is that of a slip rate between those of both half-steps, nearer to the new one.
+      const double V = std::copysign(2 * law.V0_m_per_s * std::exp(-psi / law.a) *
+                                         std::sinh(std::abs(t) / (law.a * s.p_Pa[i])), t);
+      const double last = before.slip_rate_m_per_s[i], middle = 0.5 * (last + v);
+      const double rounding = 1e-9 * (std::abs(v) + std::abs(last)) + 1e-6 * std::abs(V);
+      ASSERT_GE(V, std::min(middle, v) - rounding) << i;
+      ASSERT_LE(V, std::max(middle, v) + rounding) << i;
+      ASSERT_GE(v * trial.v_x_m_per_s[i], 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::interface
