@@ -16,7 +16,7 @@ namespace slipfront::input {
 
 namespace {
 
-constexpr std::array<const char*, 3> columns = {"x_m", "t_Pa", "p_Pa"};
+constexpr std::array<const char*, 3> wanted_columns = {"x_m", "t_Pa", "p_Pa"};
 constexpr const char* header = "x_m,t_Pa,p_Pa";
 using Row = std::array<double, 3>;
 
@@ -25,12 +25,12 @@ Message in_prestress_file(const std::filesystem::path& file) {
 }
 
 Row row_of(const std::vector<std::string_view>& fields, const Message& at) {
-  if (fields.size() != columns.size())
+  if (fields.size() != wanted_columns.size())
     throw UserError("{}: has {} columns; a row is {}", at, fields.size(), header);
   Row row{};
   for (std::size_t k = 0; k < row.size(); ++k) {
-    row[k] = number_in(fields[k], columns[k], at);
-    require_at_most(row[k], magnitudes_of(unit_of(columns[k])).most, columns[k], at);
+    row[k] = number_in(fields[k], wanted_columns[k], at);
+    require_at_most(row[k], magnitudes_of(unit_of(wanted_columns[k])).most, wanted_columns[k], at);
   }
   return row;
 }
@@ -57,7 +57,7 @@ PrestressTable read_prestress(const std::filesystem::path& file) {
     const Message at("{}:{}", in_prestress_file(file), line);
     if (have_header) return append(row_of(fields, at), at, table.rows);
     have_header = true;
-    if (!std::ranges::equal(fields, columns))
+    if (!std::ranges::equal(fields, wanted_columns))
       throw UserError("{}: the first line must be the header {}", at, header);
   });
   if (table.rows.x_m.empty())

@@ -70,11 +70,17 @@ double kinetic_coefficient(const FrictionLaw& law) {
 }
 
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
-  return visit(law, [&](const auto& l) { return l.evaluator()(speed_m_per_s, slip_m); });
+  return visit(law, [&]<class Law>(const Law& l) {
+    if constexpr (HasState<Law>) return l.steady_coefficient(speed_m_per_s);
+    else return l.evaluator()(speed_m_per_s, slip_m);
+  });
 }
 
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
-  return visit(law, [&](const auto& l) { return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m); });
+  return visit(law, [&]<class Law>(const Law& l) {
+    if constexpr (HasState<Law>) return l.steady_slope_s_per_m(speed_m_per_s);
+    else return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m);
+  });
 }
 
 std::optional<double> weakening_slip_m(const FrictionLaw& law) {

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/message.hpp"
+#include "interface/friction/parameter.hpp"
 
 // Friction laws as the rest of the program sees them. What each of them is, interface/friction/registry.hpp
 // alone knows, so that a further law leaves what includes this file as it is.
@@ -22,12 +23,6 @@ namespace slipfront::interface {
 /// |v| and slip paths. Several times slower than a law of the registry. [nodes]
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
-
-/// A state variable of a law: a number at each node, remembered from one contact update to the next.
-struct LawState {
-  const char *name, *unit;
-  double initial;
-};
 
 /// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states.
 class FrictionLaw {
@@ -113,7 +108,7 @@ const LawDescription& description_of(const FrictionLaw& law);
 double static_coefficient(const FrictionLaw& law);
 /// The coefficient that a weakening law falls to.
 double kinetic_coefficient(const FrictionLaw& law);
-/// mu after a slip path and at a slip rate |v|.
+/// mu after a slip path and at a slip rate |v|; of a law with a state that of steady sliding.
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m);
 /// d mu / d|v| there; negative where friction weakens with the slip rate.
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m);

@@ -90,17 +90,11 @@ void write_nodes(const Node<SimdVector, n_law_states>& n, Interface& s, Place at
   for (std::size_t k = 0; k < n_law_states; ++k) at.write(s.law_states[k], n.law_states[k]);
 }
 
-template <class Law>
-constexpr std::size_t n_states_of() {
-  if constexpr (HasState<Law>) return Law::states.size();
-  return 0;
-}
-
 /// A law of the registry, the same for all nodes or one for each.
 template <class Law>
 struct RegistryLaw {
   static constexpr SlipMemory memory = Law::memory;
-  static constexpr std::size_t n_states = n_states_of<Law>();
+  static constexpr std::size_t n_states = n_states_of<Law>;
   const NodeLaws* of_nodes;  ///< null where all have the same
   double tip_slip_rate_m_per_s;
   ConstantsOf<Law, SimdVector> constants;

@@ -125,10 +125,11 @@ template <ContactAlgorithm algorithm, SlipMemory, class Law, class Form, class V
 inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, double dt_s, V impedance_x,
                   Node<V, 1>& n) {
   const auto& law = constants.law;
-  const Mask<V> in_contact = n.p_Pa > 0;
   const V last_rate = n.slip_rate_m_per_s;
   const Memory<V> now = form.now(form.step(absolute(last_rate)), n.memory, V{} + 1, n.p_Pa);
-  const V p = select(in_contact, form.strength(V{} + 1, n.p_Pa, now), V{} + 1);
+  const V pressure = form.strength(V{} + 1, n.p_Pa, now);  // 0 where the node is open, or has just landed
+  const Mask<V> in_contact = pressure > 0;
+  const V p = select(in_contact, pressure, V{} + 1);
 
   V& psi = n.law_states[0];
   const V v_trial = n.v_x_m_per_s;

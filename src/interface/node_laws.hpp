@@ -27,7 +27,9 @@ struct StateLawConstants {
   V tip_slip_rate_m_per_s;  ///< see ContactModel
 };
 template <class Law>
-concept HasState = requires { Law::states; };
+inline constexpr std::size_t n_states_of = 0;
+template <HasState Law>
+inline constexpr std::size_t n_states_of<Law> = Law::states.size();
 template <class Law, class V, class Evaluator = typename Law::template Evaluator<V>>
 using ConstantsOf =
     std::conditional_t<HasState<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;

@@ -31,7 +31,7 @@ inline V root_of_traction(V Y, V k, V s, V log_trial) {
     goes_on = goes_on && absolute(step) > small;
     if (!any(goes_on)) break;
   }
-  return y;
+  return select(y < 0, V{}, y);  // by rounding alone
 }
 
 }  // namespace slipfront::interface

@@ -168,7 +168,7 @@ double measured_rate_per_s(const input::Case& config, const Timed& timed, motion
   const auto n = plate.interface_nodes.size();
   record::StaticState tractions;
   tractions.x_m = interface_x_m(plate);
-  tractions.p_s_Pa.assign(n, mean_pressure_Pa(config, plate));
+  tractions.p_s_Pa.assign(n, input::nominal_pressure_Pa(config));
   tractions.t_s_Pa.assign(n, 0.0);
   for (std::size_t k = 0; k < n / 2; ++k) tractions.t_s_Pa[k] = 1.1 * mu_s * tractions.p_s_Pa[k];
   const auto state = statics::prestressed(plate, tractions, timed.base);

@@ -21,6 +21,7 @@ using test::results_at;
 /// A separate node, in the state of one of many.
 Interface alone(const Interface& s, std::size_t i) {
   Interface one(1);
+  one.law_states.assign(s.law_states.size(), {0.0});
   const auto take = [i](auto& to, const auto& from) { to[0] = from[i]; };
   take(one.mass_per_length_kg_m2, s.mass_per_length_kg_m2);
   take(one.intact, s.intact);
@@ -46,7 +47,7 @@ TEST(NodeLaws, EqualLawsAreTheOneLawBitByBit) {
     const std::size_t n = 5 * lanes + 3;
     auto varying = one;
     varying.of_nodes = NodeLaws(std::vector<FrictionLaw>(n, one.law));
-    auto a = many_nodes(n), b = many_nodes(n);
+    auto a = many_nodes(n, one), b = many_nodes(n, one);
     start_contact(one, a);
     start_contact(varying, b);
     for (int k = 0; k < 20; ++k) {
@@ -69,13 +70,13 @@ TEST(NodeLaws, EachNodeFollowsItsOwn) {
       const auto laws = random_laws(model, n, random);
       auto varying = model;
       varying.of_nodes = NodeLaws(laws);
-      auto together = many_nodes(n);
+      auto together = many_nodes(n, model);
       start_contact(varying, together);
       std::vector<ContactModel> models(n, model);
       std::vector<Interface> single;
       for (std::size_t i = 0; i < n; ++i) {
         models[i].law = laws[i];
-        single.push_back(alone(many_nodes(n), i));
+        single.push_back(alone(many_nodes(n, model), i));
         start_contact(models[i], single[i]);
         EXPECT_EQ(results_at(together, i), results_at(single[i], 0));
       }

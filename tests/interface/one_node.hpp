@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
+#include "interface/friction/rate_and_state.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/table.hpp"
 #include "interface/friction/velocity_weakening.hpp"
@@ -37,6 +38,10 @@ void for_each_model(F&& f) {
         for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
           f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
     }
+  for (const FrictionLaw& law : {FrictionLaw(RateAndStateAging{}), FrictionLaw(RateAndStateSlip{}),
+                                 FrictionLaw(RateAndStateStrong{})})
+    for (const Relaxed relaxed : {Relaxed::none, Relaxed::pressure})
+      f(ContactModel{law, {relaxed, 2e-6, 0.1, 2e-6}});
 }
 
 inline Interface one_node() {
@@ -87,8 +92,8 @@ inline std::vector<double> results_at(const Interface& s, std::size_t i) {
 }
 
 /// Nodes of different masses, some weakened, some open.
-inline Interface many_nodes(std::size_t n) {
-  Interface s(n);
+inline Interface many_nodes(std::size_t n, const ContactModel& model) {
+  Interface s(n, model.law.states());
   for (std::size_t i = 0; i < n; ++i) {
     s.mass_per_length_kg_m2[i] = mass * (1 + 0.01 * static_cast<double>(i));
     s.intact[i] = i % 7 == 0 ? 0.5 : 1;

@@ -32,6 +32,15 @@ inline Message kinetic_above_static() {
   return Message("{1:leaf} must be at most {0:leaf}", Key("friction.mu_s"), Key("friction.mu_k"));
 }
 
+/// A state variable of a law: a number at each node, remembered from one contact update to the next.
+struct LawState {
+  const char *name, *unit;
+  double initial;
+};
+
+template <class Law>
+concept HasState = requires { Law::states; };
+
 /// What a friction law knows of the slip so far.
 enum class SlipMemory {
   none,         ///< nothing: the coefficient depends on the slip rate alone

@@ -21,11 +21,20 @@ enum class StateEvolution {
   strong_weakening,  ///< as slip, towards a steady coefficient that falls to f_w beyond V_w
 };
 
+/// Of strong weakening alone.
+template <bool weakens_strongly>
+struct StrongWeakening {};
+template <>
+struct StrongWeakening<true> {
+  double f_w = 0.2;
+  double V_w_m_per_s = 0.1;
+};
+
 /// tau = p a asinh[V/(2 V0) exp(psi/a)]: rate-and-state friction, regularised so that it is odd in V (Rice et
 /// al. 2001). It never sticks. In steady sliding the coefficient is f0 + (a - b) ln(V/V0), for large arguments;
 /// with strong weakening f_w + (that - f_w) [1 + (V/V_w)^8]^(-1/8) (Dunham et al. 2011).
 template <StateEvolution evolution>
-struct RateAndState {
+struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weakening> {
   static constexpr bool weakens_strongly = evolution == StateEvolution::strong_weakening;
   static constexpr const char* name = evolution == StateEvolution::aging  ? "rate_and_state_aging"
                                       : evolution == StateEvolution::slip ? "rate_and_state_slip"
@@ -43,23 +52,21 @@ struct RateAndState {
   double f0 = 0.6;
   double V0_m_per_s = 1e-6;
   double V_i_m_per_s = 1e-9;
-  double f_w = 0.2;
-  double V_w_m_per_s = 0.1;
 
   static constexpr auto parameters() {
     using L = RateAndState;
-    constexpr std::array<Parameter<L>, 8> all = {
+    std::array<Parameter<L>, weakens_strongly ? 8 : 6> all = {
         {{"a", &L::a, 1e-6, 10, "direct effect of the slip rate"},
          {"b", &L::b, 1e-6, 10, "effect of the state"},
          {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which the state changes"},
          {"f0", &L::f0, 0, 100, "coefficient of steady sliding at V0"},
          {"V0_m_per_s", &L::V0_m_per_s, 1e-12, 1e3, "reference slip rate"},
-         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-12, 1e3, "slip rate before the event"},
-         {"f_w", &L::f_w, 0, 100, "coefficient of steady sliding far beyond V_w"},
-         {"V_w_m_per_s", &L::V_w_m_per_s, 1e-12, 1e3, "slip rate from which friction weakens"}}};
-    std::array<Parameter<L>, weakens_strongly ? 8 : 6> used{};
-    std::copy_n(all.begin(), used.size(), used.begin());
-    return used;
+         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-12, 1e3, "slip rate before the event"}}};
+    if constexpr (weakens_strongly) {
+      all[6] = {"f_w", &L::f_w, 0, 100, "coefficient of steady sliding far beyond V_w"};
+      all[7] = {"V_w_m_per_s", &L::V_w_m_per_s, 1e-12, 1e3, "slip rate from which friction weakens"};
+    }
+    return all;
   }
   Message inconsistency() const { return {}; }
 
@@ -101,16 +108,15 @@ struct RateAndState {
       const V grown = select(lost > 1e-140, V0_m_per_s * lost / speed, V0_m_per_s * per_d_c_per_m * dt_s);
       return f0 + b * logarithm(exp_minus((f0 - psi) / b) * left + grown);
     }
-
-    // Steady sliding, for those who ask for a coefficient without a state.
-    V operator()(V speed_m_per_s, V /*slip_m*/) const { return steady_coefficient(speed_m_per_s); }
-    V slope_s_per_m(V speed_m_per_s, V slip_m) const {
-      const double small = 1e-4;
-      return ((*this)(speed_m_per_s * (1 + small), slip_m) - (*this)(speed_m_per_s * (1 - small), slip_m)) /
-             (2 * small * speed_m_per_s);
-    }
   };
-  Evaluator<double> evaluator() const { return {a, b, f0, V0_m_per_s, 1 / d_c_m, f_w, 1 / V_w_m_per_s}; }
+  Evaluator<double> evaluator() const {
+    Evaluator<double> e{a, b, f0, V0_m_per_s, 1 / d_c_m, 0, 0};
+    if constexpr (weakens_strongly) {
+      e.f_w = this->f_w;
+      e.per_V_w_s_per_m = 1 / this->V_w_m_per_s;
+    }
+    return e;
+  }
 
   /// psi where a node that slides at V_i has t and p; of steady sliding where it is open or has no t.
   double state_before(double t_Pa, double p_Pa) const {
@@ -119,10 +125,19 @@ struct RateAndState {
     return law.state_of(std::abs(t_Pa) / p_Pa, std::log(V_i_m_per_s / V0_m_per_s));
   }
 
-  /// Of steady sliding as before the event.
-  double static_coefficient() const { return evaluator().steady_coefficient(V_i_m_per_s); }
-  /// Of steady sliding at 1 m/s.
-  double kinetic_coefficient() const { return evaluator().steady_coefficient(1); }
+  /// Of steady sliding, at V_i where that is faster.
+  double steady_coefficient(double speed_m_per_s) const {
+    return evaluator().steady_coefficient(std::max(speed_m_per_s, V_i_m_per_s));
+  }
+  double steady_slope_s_per_m(double speed_m_per_s) const {
+    const double V = std::max(speed_m_per_s, V_i_m_per_s), small = 1e-4 * V;
+    const auto law = evaluator();
+    return (law.steady_coefficient(V + small) - law.steady_coefficient(V - small)) / (2 * small);
+  }
+  /// As before the event.
+  double static_coefficient() const { return steady_coefficient(0); }
+  /// At 1 m/s.
+  double kinetic_coefficient() const { return steady_coefficient(1); }
 };
 
 using RateAndStateAging = RateAndState<StateEvolution::aging>;
