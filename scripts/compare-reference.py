@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs Problem A (docs/prestress.md) or F (docs/two-bodies.md) on several meshes and compares it with other
-codes: table and figure."""
+"""Runs Problem A (docs/prestress.md), F (docs/two-bodies.md) or R-A (docs/friction/rate_and_state.md) on several
+meshes and compares it with other codes: table and figure."""
 
 import argparse
-from dataclasses import dataclass
+import csv
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import matplotlib
@@ -27,9 +28,8 @@ from reference_runs import (
 )
 from shared import write_figure
 
-FROM_M, TO_M, END_S = 0.06, 0.14, 145e-6  # where and until when the problems' domains are free of reflections
+END_S = 145e-6  # until when the problems' domains are free of reflections
 FIELDS = {"tau": "t_Pa", "p": "p_Pa", "v": "slip_rate_m_per_s", "slip": "slip_m"}
-LIMITS = {"tau": 0.03, "p": 0.03, "v": 0.03, "slip": 0.01}  # rms over range
 SNAPSHOTS_S = (60e-6, 90e-6, 120e-6)
 
 
@@ -41,6 +41,14 @@ class Problem:
     case: str
     centre_m: float  # of the nucleation patch in the case; x = 0 of the problem
     least_arrival_limit_s: float  # at the finest mesh; else max(1 %, 0.5 us)
+    other: str = "sem2dpack_1mm"  # the second code's arrivals
+    other_name: str = "SEM2DPACK, 1 mm"
+    from_m: float = 0.06
+    to_m: float = 0.14
+    tips: bool = False  # arrivals are those of fronts' tips, not the first slip rate of 1 mm/s
+    limits: dict[str, float] = field(  # rms over range
+        default_factory=lambda: {"tau": 0.03, "p": 0.03, "v": 0.03, "slip": 0.01}
+    )
 
     def arrival_limit_s(self, t: np.ndarray, finest: bool) -> np.ndarray:
         if finest and self.least_arrival_limit_s < 0.5e-6:
@@ -51,10 +59,29 @@ class Problem:
 PROBLEMS = {
     "a": Problem("problem_a", "rigid_flat_a.toml", 0.2, 0.5e-6),
     "f": Problem("bimaterial_f", "bimaterial_f.toml", 0.25, 0.2e-6),
+    "r": Problem(
+        "rate_and_state_a",
+        "rate_and_state_a.toml",
+        0.22,
+        0.3e-6,
+        other="sem2dpack_extrap",
+        other_name="SEM2DPACK, extrapolated",
+        from_m=0.035,
+        to_m=0.12,
+        tips=True,
+        limits={"tau": 0.015, "v": 0.015, "slip": 0.002},
+    ),
 }
 
 
 class Run(InterfaceRun):
+    def tips_s(self, x_m: np.ndarray) -> np.ndarray:
+        """Arrivals of fronts, linear between nodes."""
+        with open(self.folder / "fronts.csv", newline="") as file:
+            rows = [(float(row["x_m"]), float(row["onset_s"])) for row in csv.DictReader(file)]
+        own_x_m, own_s = np.array(sorted(rows)).T
+        return np.interp(x_m, own_x_m - self.centre_m, own_s)
+
     def field(self, name: str, t_s: np.ndarray, x_m: np.ndarray) -> np.ndarray:
         own_t_s = self.v_t_s if name == "v" else self.t_s
         at_times = np.array([np.interp(t_s, own_t_s, column) for column in self.fields[name].T]).T
@@ -62,30 +89,33 @@ class Run(InterfaceRun):
 
 
 class Reference:
-    def __init__(self, name: str) -> None:
-        column = read_columns(f"{name}_arrivals.csv")
+    def __init__(self, problem: Problem) -> None:
+        column = read_columns(f"{problem.name}_arrivals.csv")
         x_m = column["x_m"]
-        here = (np.abs(x_m) > FROM_M - 1e-6) & (np.abs(x_m) < TO_M + 1e-6)
+        self.problem = problem
+        here = (np.abs(x_m) > problem.from_m - 1e-6) & (np.abs(x_m) < problem.to_m + 1e-6)
         self.x_m = x_m[here]
         self.arrivals_s = column["t_slip_uguca_extrap_s"][here]
-        self.other_s = column["t_slip_sem2dpack_1mm_s"][here]
-        fields = np.load(CASES / f"data/{name}_fields.npz")
+        self.other_s = column[f"t_slip_{problem.other}_s"][here]
+        fields = np.load(CASES / f"data/{problem.name}_fields.npz")
         self.t_s = fields["t"][fields["t"] < END_S + 1e-9]
-        inside = np.abs(fields["x"]) < TO_M + 1e-6
+        inside = np.abs(fields["x"]) < problem.to_m + 1e-6
         self.fields_x_m = fields["x"][inside]
-        self.fields = {name: fields[name][: len(self.t_s), inside] for name in FIELDS}
+        self.fields = {name: fields[name][: len(self.t_s), inside] for name in problem.limits}
 
 
 Compared = tuple[float, Run, Measured]  # with the element size, mm
 
 
 def compare(run: Run, reference: Reference, limit_s: np.ndarray) -> Measured:
-    late_s = run.arrivals_s(reference.x_m) - reference.arrivals_s
+    problem = reference.problem
+    arrivals_s = run.tips_s if problem.tips else run.arrivals_s
+    late_s = arrivals_s(reference.x_m) - reference.arrivals_s
     measured: Measured = {"late_s": late_s}
     size_s = magnitude_s(late_s)
     measured["largest_s"] = size_s.max()
     measured["beyond"] = int(np.sum(size_s > limit_s))
-    outside = np.abs(reference.fields_x_m) > FROM_M - 1e-6
+    outside = np.abs(reference.fields_x_m) > problem.from_m - 1e-6
     for name, expected in reference.fields.items():
         error = run.field(name, reference.t_s, reference.fields_x_m) - expected
         measured[name] = np.sqrt(np.mean(error**2)) / np.ptp(expected)
@@ -93,16 +123,16 @@ def compare(run: Run, reference: Reference, limit_s: np.ndarray) -> Measured:
     return measured
 
 
-def table(results: list[Compared], n_points: int) -> str:
+def table(results: list[Compared], fields: dict[str, float], n_points: int) -> str:
     lines = [
-        "| h (mm) | arrival, largest difference (us) | beyond its limit | tau | p | v | slip | "
+        f"| h (mm) | arrival, largest difference (us) | beyond its limit | {' | '.join(fields)} | "
         "stepping (s) |",
-        "|---|---|---|---|---|---|---|---|",
+        "|---" * (4 + len(fields)) + "|",
     ]
     for h_mm, run, m in results:
-        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[f'{name} outside']:.2f} %" for name in FIELDS)
+        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[f'{name} outside']:.2f} %" for name in fields)
         lines.append(
-            f"| {h_mm:g} | {1e6 * m['largest_s']:.2f} | {m['beyond']} of {n_points} | {rms} | "
+            f"| {h_mm:g} | {1e6 * m['largest_s']:.3g} | {m['beyond']} of {n_points} | {rms} | "
             f"{run.wall_s:.2g} |"
         )
     return "\n".join(lines)
@@ -115,7 +145,7 @@ def draw(results: list[Compared], reference: Reference, limit_s: np.ndarray, pic
         left.fill_between(x_mm[side], -limit_us[side], limit_us[side], color="0.9", lw=0, label="limit")
     other_us = 1e6 * (reference.other_s - reference.arrivals_s)
     late_us = {f"h = {h_mm:g} mm": 1e6 * m["late_s"] for h_mm, _, m in results}
-    draw_lateness(left, x_mm, {"SEM2DPACK, 1 mm": other_us}, late_us)
+    draw_lateness(left, x_mm, {reference.problem.other_name: other_us}, late_us)
     left.set(xlabel="x (mm)", ylabel="arrival less that of uguca, extrapolated (us)")
     for time_s in SNAPSHOTS_S:
         row = np.argmin(np.abs(reference.t_s - time_s))
@@ -149,20 +179,20 @@ def compare_all(options: argparse.Namespace) -> int:
     """Exit code: 0 where the finest mesh keeps the limits."""
     problem = PROBLEMS[options.problem]
     picture = picture_of(options, f"reference_{options.problem}.png")
-    reference = Reference(problem.name)
+    reference = Reference(problem)
     results: list[Compared] = []
     for h_mm in options.h_mm:
         folder = run_with(options, problem.case, f"{problem.name}_h_{h_mm:g}_mm", h_mm * 1e-3)
         run = Run(folder, problem.centre_m, FIELDS)
         limit_s = problem.arrival_limit_s(reference.arrivals_s, h_mm == min(options.h_mm))
         results.append((h_mm, run, compare(run, reference, limit_s)))
-    print(table(results, len(reference.x_m)))
+    print(table(results, problem.limits, len(reference.x_m)))
     between = np.nanmax(np.abs(reference.other_s - reference.arrivals_s))
-    print(f"\nBetween the two reference codes (SEM2DPACK at 1 mm): {1e6 * between:.2f} us in arrivals.")
+    print(f"\nBetween the two reference codes ({problem.other_name}): {1e6 * between:.2f} us in arrivals.")
     draw(results, reference, limit_s, picture)
     finest = results[-1][2]
     holds = finest["beyond"] == 0 and all(
-        max(finest[name], finest[f"{name} outside"]) < limit for name, limit in LIMITS.items()
+        max(finest[name], finest[f"{name} outside"]) < limit for name, limit in problem.limits.items()
     )
     return verdict(f"h = {results[-1][0]:g} mm", holds)
 

@@ -43,6 +43,7 @@ class InterfaceRun:
 
     def __init__(self, folder: Path, centre_m: float, fields: dict[str, str]) -> None:
         """Fields by their names here, with the keys in the file; "v" is the slip rate."""
+        self.folder, self.centre_m = folder, centre_m
         with open(folder / "run.json") as file:
             facts = json.load(file)
         self.wall_s = facts["wall_s"]

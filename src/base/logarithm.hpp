@@ -8,8 +8,8 @@ namespace slipfront {
 /// ln x to within 2 units in its last place, of normal numbers x > 0, for a double and for SimdVector bit by
 /// bit alike.
 ///
-/// x = 2^e m with m from 1/sqrt(2) to sqrt(2), ln m = 2 artanh(s), s = (m - 1)/(m + 1), |s| < 0.172; the first
-/// term left out of the series of artanh, s^25/25, is below 1e-17 of its first one.
+/// x = 2^e m with m from 1/sqrt(2) to sqrt(2), ln m = 2 artanh(s), s = (m - 1)/(m + 1), |s| < 0.172; the
+/// first term left out of the series of artanh, s^25/25, is below 1e-17 of its first one.
 template <class V>
 inline V logarithm(V x) {
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcd, one = 0x3ff0000000000000;

@@ -117,7 +117,12 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
                            ? fmt::format("; the trigger has {:.3g} m", *rupture.trigger_length_m)
                            : std::string();
   list.add("nucleation length",
-           fmt::format("{:.3g} m (Uenishi, Rice 2003): slow slip over it runs away", *o.nucleation_length_m));
+           fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
+                       o.unstable_wavelength_m ? "Rubin, Ampuero 2005" : "Uenishi, Rice 2003"));
+  if (o.unstable_wavelength_m)
+    list.add("waves grow from",
+             fmt::format("{:.3g} m on, under the slip rate before the event (Rice, Ruina 1983)",
+                         *o.unstable_wavelength_m));
   if (o.griffith_half_length_m)
     list.add("critical crack length",
              fmt::format("{:.3g} m (Griffith; Andrews 1976): cracks as long run on{}",
@@ -127,7 +132,10 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
 }
 
 void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
-  if (rupture.nominal) {
+  if (rupture.tip_slip_rate_m_per_s) {
+    list.add("a front's tip",
+             fmt::format("where the slip rate passes {:.3g} m/s", *rupture.tip_slip_rate_m_per_s));
+  } else if (rupture.nominal) {
     list.add("lengths below",
              "at t = mu_s p under the nominal pressure; `run` gives S and what follows from it");
   } else {

@@ -53,6 +53,10 @@ void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
 
 void print_rupture(const run::RuptureOutlook& rupture) {
   const auto& o = rupture.of_nodes;
+  if (rupture.tip_slip_rate_m_per_s) {
+    print("a front's tip is where the slip rate passes {:.3g} m/s\n", *rupture.tip_slip_rate_m_per_s);
+    return;
+  }
   std::string text = fmt::format("S before the event, inside: {:.3g}", o.S.median);
   if (o.S.least < o.S.largest)
     text += fmt::format(" in the median, {:.3g} to {:.3g}", o.S.least, o.S.largest);

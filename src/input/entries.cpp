@@ -470,10 +470,11 @@ void add_friction(Entries& all) {
   friction.add("relaxation_time_s", &Regularisation::time_s, above_or_infinite(0), "t* of that rate");
   Table tip(all, "friction", std::identity(), Stage::motion);
   tip.only_with = never_stuck();
-  tip.optional("tip_slip_rate_m_per_s", &Case::tip_slip_rate_m_per_s, above(0), 0.1,
-               "slip rate beyond which a node counts as slipping: a front's tip. Without it that at which the "
-               "direct effect is as steep as the radiation damping, 2 c_S a p/G between equal bodies, at least "
-               "10 V_i");
+  tip.optional(
+      "tip_slip_rate_m_per_s", &Case::tip_slip_rate_m_per_s, above(0), 0.1,
+      "slip rate beyond which a node counts as slipping: a front's tip. Without it that at which the "
+      "direct effect is as steep as the radiation damping, 2 c_S a p/G between equal bodies, at least "
+      "10 V_i");
   Table along_x(all, "friction", &Case::friction_along_x, Stage::motion);
   along_x.add("file", &FrictionAlongX::file,
               "CSV table x_m and any of the law's parameters along the interface, from its first to its last "

@@ -52,8 +52,10 @@ void check_state(const Case& config) {
   if (interface::is_at_edge(config.event) && config.trigger.form == interface::TriggerForm::weakened)
     refuse(Key("event.trigger_form"), "weakened", "added or raised");
   if (config.regularisation.relaxed == interface::Relaxed::strength)
-    throw UserError("{} = strength acts as pressure under {} = {}, whose coefficient has its own delay; choose pressure or none",
-                    Key("friction.regularisation"), law, config.friction.name())
+    throw UserError(
+        "{} = strength acts as pressure under {} = {}, whose coefficient has its own delay; choose pressure "
+        "or none",
+        Key("friction.regularisation"), law, config.friction.name())
         .about(law.name);
 }
 

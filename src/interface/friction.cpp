@@ -71,15 +71,30 @@ double kinetic_coefficient(const FrictionLaw& law) {
 
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>) return l.steady_coefficient(speed_m_per_s);
-    else return l.evaluator()(speed_m_per_s, slip_m);
+    if constexpr (HasState<Law>)
+      return l.steady_coefficient(speed_m_per_s);
+    else
+      return l.evaluator()(speed_m_per_s, slip_m);
   });
 }
 
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>) return l.steady_slope_s_per_m(speed_m_per_s);
-    else return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m);
+    if constexpr (HasState<Law>)
+      return l.steady_slope_s_per_m(speed_m_per_s);
+    else
+      return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m);
+  });
+}
+
+std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s) {
+  return visit(law, [&]<class Law>(const Law& l) -> std::optional<StateResponse> {
+    if constexpr (!HasState<Law>)
+      return {};
+    else {
+      const double V = std::max(speed_m_per_s, l.V_i_m_per_s);
+      return StateResponse{l.a, l.a - V * l.steady_slope_s_per_m(V), l.d_c_m, V};
+    }
   });
 }
 

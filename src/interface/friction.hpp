@@ -112,6 +112,15 @@ double kinetic_coefficient(const FrictionLaw& law);
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m);
 /// d mu / d|v| there; negative where friction weakens with the slip rate.
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m);
+/// What a law with a state does to small changes of steady sliding: mu answers the slip rate at once, and by
+/// the state with a delay.
+struct StateResponse {
+  double a, b;   ///< d mu/d ln V at once, and what the state takes back of it
+  double d_c_m;  ///< slip over which the state follows
+  double V_m_per_s;
+};
+/// At a slip rate, at V_i where that is faster; none for laws without a state.
+std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s);
 /// Of a law that weakens with slip, the d_c of linear slip weakening with its coefficients and fracture
 /// energy.
 std::optional<double> weakening_slip_m(const FrictionLaw& law);

@@ -13,7 +13,7 @@ namespace slipfront::interface {
 Interface::Interface(std::size_t n, std::span<const LawState> states_of_law) {
   for (const auto& field : interface_fields)
     std::visit([&](auto array) { (this->*array).assign(n, field.initial); }, field.array);
-  for (const auto& state : states_of_law) law_states.emplace_back(n, state.initial);
+  law_states.assign(states_of_law.size(), std::vector<double>(n));
 }
 
 namespace {
@@ -207,8 +207,6 @@ void start_contact(const ContactModel& model, Interface& s) {
       s.locked[i] = s.p_Pa[i] > 0;
     }
   });
-  const auto states = model.law.states();
-  for (std::size_t k = 0; k < s.law_states.size(); ++k) std::ranges::fill(s.law_states[k], states[k].initial);
   visit(model.law, [&]<class Law>(const Law&) {
     if constexpr (HasState<Law>)
       for (std::size_t i = 0; i < s.size(); ++i)

@@ -21,8 +21,12 @@ using interface::NucleationForm;
 using interface::TriggerForm;
 
 stability::NodeBefore node_before(const interface::FrictionLaw& law, double t_Pa, double p_Pa) {
-  return {t_Pa, interface::static_coefficient(law) * p_Pa, interface::kinetic_coefficient(law) * p_Pa,
-          interface::weakening_slip_m(law)};
+  return {t_Pa,
+          interface::static_coefficient(law) * p_Pa,
+          interface::kinetic_coefficient(law) * p_Pa,
+          interface::weakening_slip_m(law),
+          p_Pa,
+          interface::state_response(law, 0)};
 }
 
 /// A node with its place.
@@ -66,9 +70,11 @@ double overstressed_share(const input::Case& config, const std::vector<Placed>& 
   return most;
 }
 
+/// None under a law that never sticks.
 std::int64_t n_beyond_strength(const std::vector<Placed>& nodes) {
-  return std::ranges::count_if(
-      nodes, [](const Placed& placed) { return placed.node.t_Pa > placed.node.strength_Pa; });
+  return std::ranges::count_if(nodes, [](const Placed& placed) {
+    return !placed.node.state && placed.node.t_Pa > placed.node.strength_Pa;
+  });
 }
 
 /// Empty, or why the event does not begin.
@@ -77,7 +83,7 @@ std::string doubt_of_beginning(const input::Case& config, const std::vector<Plac
   if (2 * n_beyond > std::ssize(nodes))
     return fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once, without a front",
                        n_beyond, nodes.size());
-  if (nodes.empty() || n_beyond > 0) return {};
+  if (nodes.empty() || n_beyond > 0 || nodes.front().node.state) return {};
   if (config.event == EventKind::none) return "event.kind = none, and t is below mu_s p at all nodes inside";
   const bool pushes = config.trigger.form != TriggerForm::weakened;
   if (interface::is_at_edge(config.event) && pushes && config.trigger.amount < 1)
@@ -156,6 +162,7 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   RuptureOutlook o;
   o.of_nodes = stability::outlook(bodies_of(config), nodes);
   o.trigger_length_m = trigger_length_m(config);
+  if (!config.friction.states().empty()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
   if (const auto half_m = o.of_nodes.supershear_half_length_m;

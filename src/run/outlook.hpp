@@ -19,6 +19,8 @@ struct RuptureOutlook {
   bool nominal = false;                    ///< tractions are not known yet
   std::optional<double> trigger_length_m;  ///< of the zone at an edge, or of the patch
   std::optional<double> process_zone_elements;
+  /// Beyond it a node counts as slipping, under a law that never sticks.
+  std::optional<double> tip_slip_rate_m_per_s;
   std::vector<std::string> doubts;    ///< why nothing may rupture, a line each
   std::vector<std::string> cautions;  ///< what mesh and damping decide of it, a line each
 };

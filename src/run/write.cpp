@@ -139,8 +139,10 @@ Json rupture_json(const RuptureOutlook& rupture) {
           {"griffith_half_length_m", optional_json(o.griffith_half_length_m)},
           {"supershear_half_length_m", optional_json(o.supershear_half_length_m)},
           {"process_zone_m", optional_json(o.process_zone_m)},
+          {"unstable_wavelength_m", optional_json(o.unstable_wavelength_m)},
           {"process_zone_elements", optional_json(rupture.process_zone_elements)},
           {"trigger_length_m", optional_json(rupture.trigger_length_m)},
+          {"tip_slip_rate_m_per_s", optional_json(rupture.tip_slip_rate_m_per_s)},
           {"regime", o.regime},
           {"doubts", rupture.doubts}};
 }

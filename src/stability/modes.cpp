@@ -23,8 +23,10 @@ Response response(const Sliding& sliding, double unit_Pa_per_m, Complex s) {
   const Complex delay = sliding.relaxed == interface::Relaxed::none
                             ? Complex{1}
                             : sliding.relaxation_rate_per_s / (sliding.relaxation_rate_per_s + s);
-  Complex of_slip =
-      sliding.pressure_Pa * (sliding.slope_s_per_m * s + sliding.slip_slope_per_m) / unit_Pa_per_m;
+  Complex slope = sliding.slope_s_per_m;
+  if (sliding.state_rate_per_s > 0)
+    slope += sliding.state_slope_s_per_m * sliding.state_rate_per_s / (sliding.state_rate_per_s + s);
+  Complex of_slip = sliding.pressure_Pa * (slope * s + sliding.slip_slope_per_m) / unit_Pa_per_m;
   if (sliding.relaxed == interface::Relaxed::strength) of_slip *= delay;
   return {delay, of_slip};
 }
@@ -99,6 +101,11 @@ Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s,
   s.slope_s_per_m = interface::friction_slope_s_per_m(law, speed_m_per_s, 0);
   s.slip_slope_per_m =
       (interface::friction_coefficient(law, speed_m_per_s, small_slip_m) - s.mu) / small_slip_m;
+  if (const auto state = interface::state_response(law, speed_m_per_s)) {
+    s.slope_s_per_m = state->a / state->V_m_per_s;
+    s.state_slope_s_per_m = -state->b / state->V_m_per_s;
+    s.state_rate_per_s = state->V_m_per_s / state->d_c_m;
+  }
   s.pressure_Pa = pressure_Pa;
   s.relaxed = regularisation.relaxed;
   s.relaxation_rate_per_s = interface::relaxation_rate_per_s(regularisation, speed_m_per_s);

@@ -18,11 +18,13 @@ namespace slipfront::stability {
 /// contact is never lost. Derivations: docs/stability.md.
 struct Sliding {
   double mu = 0;                     ///< coefficient at the sliding speed
-  double slope_s_per_m = 0;          ///< d mu / d|v| there; negative: weakening
+  double slope_s_per_m = 0;          ///< d mu / d|v| there, at once; negative: weakening
   double slip_slope_per_m = 0;       ///< d mu / d slip, of a law that depends on slip
   double pressure_Pa = 0;            ///< uniform, positive in compression
   double relaxation_rate_per_s = 0;  ///< of a delayed response, at the sliding speed
   interface::Relaxed relaxed = interface::Relaxed::none;
+  double state_slope_s_per_m = 0;  ///< what the state adds to the slope with a delay, of a law that has one
+  double state_rate_per_s = 0;     ///< of that delay
 };
 
 /// Uniform sliding at a speed under a law; speed 0 is the limit of slow sliding.

@@ -31,12 +31,12 @@ bool is_driven(const NodeBefore& node) {
   return node.residual_Pa < node.t_Pa;
 }
 
-/// Medians of a length over the nodes that weaken by slip.
-template <class Length>
-std::optional<double> median_length_m(const std::vector<NodeBefore>& nodes, Length length_m) {
+/// Medians of a length over the nodes that weaken and have what it takes.
+template <class Has, class Length>
+std::optional<double> median_length_m(const std::vector<NodeBefore>& nodes, Has has, Length length_m) {
   std::vector<double> lengths_m;
   for (const auto& node : nodes)
-    if (weakens(node) && node.d_c_m) lengths_m.push_back(length_m(node));
+    if (weakens(node) && (node.*has)) lengths_m.push_back(length_m(node));
   if (lengths_m.empty()) return {};
   const double median = spread_of(lengths_m).median;
   return std::isfinite(median) ? std::optional(median) : std::nullopt;
@@ -92,6 +92,17 @@ double nucleation_length_m(double modulus_Pa, double strength_drop_Pa, double d_
   return 1.158 * modulus_Pa * d_c_m / strength_drop_Pa;
 }
 
+double unstable_wavelength_m(double modulus_Pa, const interface::StateResponse& state, double pressure_Pa) {
+  if (state.b <= state.a) return infinity;
+  return std::numbers::pi * modulus_Pa * state.d_c_m / ((state.b - state.a) * pressure_Pa);
+}
+
+double nucleation_length_m(double modulus_Pa, const interface::StateResponse& state, double pressure_Pa) {
+  if (state.b <= state.a) return infinity;
+  const double L_b_m = modulus_Pa * state.d_c_m / (state.b * pressure_Pa), ratio = state.a / state.b;
+  return ratio < 0.3781 ? 2 * 1.3774 * L_b_m : 2 * L_b_m / (std::numbers::pi * (1 - ratio) * (1 - ratio));
+}
+
 double griffith_half_length_m(double modulus_Pa, double strength_drop_Pa, double d_c_m,
                               double stress_drop_Pa) {
   if (stress_drop_Pa <= 0) return infinity;
@@ -120,6 +131,27 @@ Spread spread_of(std::vector<double> values) {
   return {values.front(), low == high ? low : 0.5 * (low + high), values.back()};
 }
 
+namespace {
+
+/// The strength at a tip follows its slip rate: S does not tell.
+void set_lengths_of_state(const std::vector<NodeBefore>& nodes, Outlook& o) {
+  const auto median = [&](auto length_m) {
+    return median_length_m(nodes, &NodeBefore::state,
+                           [&](const NodeBefore& n) { return length_m(o.modulus_Pa, *n.state, n.p_Pa); });
+  };
+  using State = interface::StateResponse;
+  o.nucleation_length_m =
+      median([](double mu, const State& s, double p) { return nucleation_length_m(mu, s, p); });
+  o.process_zone_m =
+      median([](double mu, const State& s, double p) { return process_zone_m(mu, s.b * p, s.d_c_m); });
+  o.unstable_wavelength_m = median(unstable_wavelength_m);
+  o.S = o.drop_ratio = {nan, nan, nan};
+  o.regime = o.n_weakening > 0 ? "unknown: the strength at a tip follows its slip rate"
+                               : "none: friction does not weaken at any node";
+}
+
+}  // namespace
+
 Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& all) {
   Outlook o;
   o.n_nodes = all.size();
@@ -138,13 +170,17 @@ Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& all) {
   o.drop_ratio = spread_of(ratio);
   o.modulus_Pa = modulus_Pa(bodies);
   const auto drop_Pa = [](const NodeBefore& node) { return node.strength_Pa - node.residual_Pa; };
-  o.nucleation_length_m = median_length_m(nodes, [&](const NodeBefore& node) {
+  if (!nodes.empty() && nodes.front().state) {
+    set_lengths_of_state(nodes, o);
+    return o;
+  }
+  o.nucleation_length_m = median_length_m(nodes, &NodeBefore::d_c_m, [&](const NodeBefore& node) {
     return nucleation_length_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m);
   });
-  o.process_zone_m = median_length_m(nodes, [&](const NodeBefore& node) {
+  o.process_zone_m = median_length_m(nodes, &NodeBefore::d_c_m, [&](const NodeBefore& node) {
     return process_zone_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m);
   });
-  o.griffith_half_length_m = median_length_m(nodes, [&](const NodeBefore& node) {
+  o.griffith_half_length_m = median_length_m(nodes, &NodeBefore::d_c_m, [&](const NodeBefore& node) {
     return griffith_half_length_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m, node.t_Pa - node.residual_Pa);
   });
   if (o.griffith_half_length_m && o.S.median < supershear_S)

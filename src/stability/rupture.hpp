@@ -30,6 +30,14 @@ double griffith_half_length_m(double modulus_Pa, double strength_drop_Pa, double
 /// (1973); Day et al. (2005).
 double process_zone_m(double modulus_Pa, double strength_drop_Pa, double d_c_m);
 
+/// Wavelength beyond which uniform sliding under a law with a state is unstable: pi mu* d_c/((b - a) p), Rice
+/// and Ruina (1983), without inertia; infinite where friction does not weaken with the slip rate.
+double unstable_wavelength_m(double modulus_Pa, const interface::StateResponse& state, double pressure_Pa);
+
+/// Length of the slip zone at which slip under the aging law runs away, L_b = mu* d_c/(b p): 2.755 L_b for
+/// a/b < 0.378, else 2 L_b/(pi (1 - a/b)^2). Rubin and Ampuero (2005), twice their half-length.
+double nucleation_length_m(double modulus_Pa, const interface::StateResponse& state, double pressure_Pa);
+
 /// Below it fronts in plane can pass to speeds above c_S: Andrews (1976, 1985).
 inline constexpr double supershear_S = 1.77;
 
@@ -43,6 +51,8 @@ struct NodeBefore {
   double strength_Pa = 0;            ///< mu_s p
   double residual_Pa = 0;            ///< mu_k p
   std::optional<double> d_c_m = {};  ///< none where the law has no length
+  double p_Pa = 0;
+  std::optional<interface::StateResponse> state = {};  ///< at V_i, of a law with a state
 };
 
 /// Strength excess S = (strength - t)/(t - residual); infinite where t is not above the residual strength.
@@ -69,7 +79,8 @@ struct Outlook {
   double modulus_Pa = 0;
   /// Of the median node; none where the law has no length, and Griffith's where none is driven.
   std::optional<double> nucleation_length_m, process_zone_m, griffith_half_length_m, supershear_half_length_m;
-  std::string regime;  ///< one plain line
+  std::optional<double> unstable_wavelength_m;  ///< of a law with a state
+  std::string regime;                           ///< one plain line
 };
 Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& nodes);
 

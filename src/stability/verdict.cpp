@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/numbers.hpp"
+#include "stability/rupture.hpp"
 
 namespace slipfront::stability {
 namespace {
@@ -121,6 +122,31 @@ bool growth_is_unbounded(const Bodies& bodies, const Sliding& sliding) {
                              [](const Mode& mode) { return (mode.s_per_s * mode.s_per_s).real() > 0; });
 }
 
+namespace {
+
+/// Under a law with a state, without inertia: of V/d_c the growth S solves a S^2 + (a - b + K) S + K = 0, K =
+/// mu* k d_c/(2 p), and is fastest at the longest waves (Rice and Ruina 1983).
+WellPosedness well_posedness_of_state(const Bodies& bodies, WellPosedness w) {
+  const auto& s = w.sliding;
+  const double V_over_d_c = s.state_rate_per_s;
+  const double a = s.slope_s_per_m, weakening = -s.state_slope_s_per_m - a;
+  const double K = 0.5 * modulus_Pa(bodies) * 2 * std::numbers::pi / w.longest_wavelength_m /
+                   (s.pressure_Pa * s.state_rate_per_s);
+  const double half = 0.5 * (weakening - K) / a, below = half * half - K / a;
+  w.fastest_growth_per_s = half > 0 ? V_over_d_c * (below > 0 ? half + std::sqrt(below) : half) : 0;
+  w.fastest_wavelength_m = half > 0 ? w.longest_wavelength_m : 0;
+  w.statement = weakening <= 0 ? "well-posed: friction strengthens with the slip rate"
+                : half <= 0
+                    ? "well-posed: waves as long as the interface decay before the event, without inertia"
+                    : fmt::format(
+                          "well-posed: long waves grow, e-fold in {:.3g} s at the slip rate before the "
+                          "event; the direct effect damps short ones",
+                          1 / w.fastest_growth_per_s);
+  return w;
+}
+
+}  // namespace
+
 WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw& law, double pressure_Pa,
                              double element_size_m, double longest_wavelength_m,
                              const interface::Regularisation& regularisation) {
@@ -131,11 +157,14 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
   WellPosedness w;
   w.sliding = uniform_sliding(law, 0, pressure_Pa, regularisation);
   w.grid_wavelength_m = 2 * element_size_m;
-  w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);
-  w.unbounded = growth_is_unbounded(bodies, w.sliding);
+  w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
+  w.damping_length_m = std::min(damping_length_m(bodies.above), damping_length_m(other));
+  w.damping_length_over_h = w.damping_length_m / element_size_m;
   w.weakening_over_radiation =
       0 - w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);
-  w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
+  if (w.sliding.state_rate_per_s > 0) return well_posedness_of_state(bodies, w);
+  w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);
+  w.unbounded = growth_is_unbounded(bodies, w.sliding);
   if (w.unbounded) {
     w.fastest_growth_per_s = infinity;
   } else {
@@ -146,8 +175,6 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
     if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
   }
   w.growth_in_crossing = w.fastest_growth_per_s * element_size_m / fastest_speed_m_per_s;
-  w.damping_length_m = std::min(damping_length_m(bodies.above), damping_length_m(other));
-  w.damping_length_over_h = w.damping_length_m / element_size_m;
   w.statement = statement_of(w, !are_alike(bodies));
   return w;
 }

@@ -31,8 +31,8 @@ TEST(Logarithm, IsExactToTwoUnitsInTheLastPlace) {
   for (const double x : arguments()) {
     const long double exact = std::log(static_cast<long double>(x));
     const int exponent = exact == 0 ? -1074 + 52 : std::ilogb(static_cast<double>(exact));
-    worst = std::max(worst, static_cast<double>(std::abs(logarithm(x) - exact) /
-                                                std::ldexp(1.0L, exponent - 52)));
+    worst = std::max(worst,
+                     static_cast<double>(std::abs(logarithm(x) - exact) / std::ldexp(1.0L, exponent - 52)));
   }
   EXPECT_LT(worst, 2);
   EXPECT_EQ(logarithm(1.0), 0);

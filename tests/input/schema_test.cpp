@@ -75,10 +75,10 @@ auto members(const interface::FrictionLaw& friction) {
   });
 }
 auto members(const Case& c) {
-  const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, regularisation,
-               contact, event, trigger, nucleation, time, fronts, output, probes] = c;
+  const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, tip,
+               regularisation, contact, event, trigger, nucleation, time, fronts, output, probes] = c;
   return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<13>(loading),
-                    members(prestress), members(friction), members(friction_along_x),
+                    members(prestress), members(friction), members(friction_along_x), tip,
                     members<4>(regularisation), contact, event, members<5>(trigger), members<5>(nucleation),
                     members<9>(time), members<7>(fronts), members<5>(output), members<4>(probes));
 }

@@ -27,10 +27,10 @@ void for_each_law(F&& f) {
 TEST(Registry, HoldsTheLawsTheCaseFileNames) {
   std::set<std::string> names;
   for_each_law([&](const auto& law) { names.insert(law.name); });
-  EXPECT_EQ(names, (std::set<std::string>{"velocity_weakening", "coulomb", "slip_weakening",
-                                          "slip_weakening_healing", "slip_table", "slip_rate_table",
-                                          "rate_and_state_aging", "rate_and_state_slip",
-                                          "rate_and_state_strong"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"velocity_weakening", "coulomb", "slip_weakening",
+                                   "slip_weakening_healing", "slip_table", "slip_rate_table",
+                                   "rate_and_state_aging", "rate_and_state_slip", "rate_and_state_strong"}));
   EXPECT_EQ(names.size(), law_descriptions().size());
 }
 
@@ -39,24 +39,24 @@ TEST(Registry, EachLawIsUsableByDefault) {
     SCOPED_TRACE(law.name);
     EXPECT_EQ(law.inconsistency().text, "");
     if constexpr (!HasState<Law>) {
-    // Strength before slip is the static one; speed and slip never make it stronger, or weaker than the
-    // kinetic one, which they reach.
-    const auto mu = law.evaluator();
-    EXPECT_DOUBLE_EQ(mu(0, 0), law.static_coefficient());
-    EXPECT_DOUBLE_EQ(mu(1e6, 1e6), law.kinetic_coefficient());
-    EXPECT_EQ(static_coefficient(FrictionLaw(law)), law.static_coefficient());
-    EXPECT_EQ(kinetic_coefficient(FrictionLaw(law)), law.kinetic_coefficient());
-    for (const double v : {0.0, 1e-9, 1e-3, 1.0, 1e3})
-      for (const double slip : {0.0, 1e-9, 1e-6, 1e-3}) {
-        EXPECT_GE(mu(v, slip), law.kinetic_coefficient());
-        EXPECT_LE(mu(v, slip), mu(0, 0));
-        // The compiler contracts products and sums of the two differently.
-        EXPECT_DOUBLE_EQ(friction_coefficient(FrictionLaw(law), v, slip), mu(v, slip));
-        EXPECT_DOUBLE_EQ(friction_slope_s_per_m(FrictionLaw(law), v, slip), mu.slope_s_per_m(v, slip));
-        if (law.memory == SlipMemory::none) {
-          EXPECT_EQ(mu(v, slip), mu(v, 0));
+      // Strength before slip is the static one; speed and slip never make it stronger, or weaker than the
+      // kinetic one, which they reach.
+      const auto mu = law.evaluator();
+      EXPECT_DOUBLE_EQ(mu(0, 0), law.static_coefficient());
+      EXPECT_DOUBLE_EQ(mu(1e6, 1e6), law.kinetic_coefficient());
+      EXPECT_EQ(static_coefficient(FrictionLaw(law)), law.static_coefficient());
+      EXPECT_EQ(kinetic_coefficient(FrictionLaw(law)), law.kinetic_coefficient());
+      for (const double v : {0.0, 1e-9, 1e-3, 1.0, 1e3})
+        for (const double slip : {0.0, 1e-9, 1e-6, 1e-3}) {
+          EXPECT_GE(mu(v, slip), law.kinetic_coefficient());
+          EXPECT_LE(mu(v, slip), mu(0, 0));
+          // The compiler contracts products and sums of the two differently.
+          EXPECT_DOUBLE_EQ(friction_coefficient(FrictionLaw(law), v, slip), mu(v, slip));
+          EXPECT_DOUBLE_EQ(friction_slope_s_per_m(FrictionLaw(law), v, slip), mu.slope_s_per_m(v, slip));
+          if (law.memory == SlipMemory::none) {
+            EXPECT_EQ(mu(v, slip), mu(v, 0));
+          }
         }
-      }
     }
   });
 }

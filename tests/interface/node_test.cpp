@@ -28,8 +28,8 @@ void expect_same_bits(const Interface& a, const Interface& b, std::size_t b_begi
   }
 }
 
-/// But for roundings: the compiler may fuse a product and a sum in one of them. They are amplified in the ratio
-/// to a small strength, and under a law with a state by tau/(a p), the exponent.
+/// But for roundings: the compiler may fuse a product and a sum in one of them. They are amplified in the
+/// ratio to a small strength, and under a law with a state by tau/(a p), the exponent.
 void expect_same_values(const Interface& a, const Interface& b) {
   const double rounding = a.law_states.empty() ? 4e-14 : 4e-13;
   ASSERT_EQ(a.slipping, b.slipping);
@@ -111,7 +111,7 @@ Interface nodes(std::size_t n, const ContactModel& model) {
 }
 
 TEST(InterfaceFields, AreAllArraysThatNodesHave) {
-  constexpr std::array<LawState, 2> states = {{{"theta", "s", 0.5}, {"age", "s", 2}}};
+  constexpr std::array<LawState, 2> states = {{{"theta", "s"}, {"age", "s"}}};
   Interface s(3, states);
   std::set<const void*> arrays;
   for_each_field(s, [&](FieldKind, const auto& values) {
@@ -119,7 +119,6 @@ TEST(InterfaceFields, AreAllArraysThatNodesHave) {
     arrays.insert(values.data());
   });
   EXPECT_EQ(arrays.size(), interface_fields.size() + states.size());
-  EXPECT_EQ(s.law_states, (std::vector<std::vector<double>>{{0.5, 0.5, 0.5}, {2, 2, 2}}));
   // An array that the table lacks would make the struct larger.
   struct Expected {
     std::vector<double> fields[interface_fields.size()];

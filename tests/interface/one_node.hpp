@@ -38,8 +38,8 @@ void for_each_model(F&& f) {
         for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
           f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
     }
-  for (const FrictionLaw& law : {FrictionLaw(RateAndStateAging{}), FrictionLaw(RateAndStateSlip{}),
-                                 FrictionLaw(RateAndStateStrong{})})
+  for (const FrictionLaw& law :
+       {FrictionLaw(RateAndStateAging{}), FrictionLaw(RateAndStateSlip{}), FrictionLaw(RateAndStateStrong{})})
     for (const Relaxed relaxed : {Relaxed::none, Relaxed::pressure})
       f(ContactModel{law, {relaxed, 2e-6, 0.1, 2e-6}});
 }

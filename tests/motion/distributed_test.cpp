@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/rate_and_state.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/distributed_stepper.hpp"
 #include "motion/event.hpp"
@@ -305,11 +305,6 @@ TEST(Subdomains, AreWrongNoFartherThanTheColumnsOfAStep) {
   }
 }
 
-/// A law with a state variable.
-struct WithState : interface::SlipWeakening {
-  static constexpr std::array<interface::LawState, 1> states = {{{"theta", "s", 7.5}}};
-};
-
 TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
   Problem even, of_two, of_graded = graded(), of_two_graded = graded(), repeating = graded();
   of_two.below = of_two_graded.below = &gel;
@@ -319,8 +314,11 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
     problem->plate.corner = mesh::Corner::relief;
   repeating.plate.sides = mesh::Sides::periodic;
   repeating.plate.top = mesh::Top::absorbing;
-  for (auto problem : {even, of_two, of_graded, of_two_graded, repeating}) {
-    problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
+  auto with_state = of_two;
+  with_state.contact.law = interface::RateAndStateAging {};
+  for (auto problem : {even, of_two, of_graded, of_two_graded, repeating, with_state}) {
+    if (problem.contact.law.states().empty())
+      problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
     const auto one = run_by_one(problem, run_steps);
     Team two(2, problem), three(3, problem);
     const auto begin = two.begin();
@@ -343,44 +341,6 @@ TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
     compare();
     journey = two.take_steps(by_two, run_steps - first - second);
     compare();
-  }
-}
-
-TEST(Subdomains, HaveTheStateVariablesOfTheFrictionLaw) {
-  Problem problem;
-  const auto n_in_halo_of = [&] {
-    const Bodies bodies(problem);
-    Stepper stepper(bodies.sources(), problem.contact, problem.time, {});
-    std::size_t n = 0;
-    stepper.visit_columns({0, 1}, [&](const auto*, std::size_t count) { n += count; });
-    return n;
-  };
-  problem.contact.law = interface::SlipWeakening {};
-  const auto n_without = n_in_halo_of();
-  problem.contact.law = WithState{};
-  EXPECT_EQ(n_in_halo_of(), n_without + 1);
-
-  const Bodies bodies(problem);
-  const auto begin = begin_of(problem, bodies);
-  Stepper before(bodies.sources(), problem.contact, problem.time, {}),
-      after(bodies.sources(), problem.contact, problem.time, {});
-  const auto theta_s = [](const Stepper& stepper) { return stepper.interface_state().law_states.at(0); };
-  before.start(begin.state, 0, begin.loads);
-  const std::vector<double> initial(before.interface_state().size(), 7.5);
-  EXPECT_EQ(theta_s(before), initial);
-  // Any values, by way of what is kept.
-  auto chunks = chunks_of(before, 2);
-  std::vector<double> expected;
-  for (auto& chunk : chunks)
-    for (double& value : chunk.values)
-      if (value == 7.5) expected.push_back(value += static_cast<double>(expected.size()));
-  ASSERT_EQ(expected.size(), initial.size());
-  for (const int n : {2, 3}) {
-    Team team(n, problem);
-    team.restore(begin.loads, chunks);
-    team.take_steps(Journey(begin), 30);
-    restore(after, begin.loads, team.chunks());
-    EXPECT_EQ(theta_s(after), expected);
   }
 }
 

@@ -29,16 +29,16 @@ interface::Interface unchanged() {
   interface::Interface s(n_nodes);
   s.t_Pa.assign(n_nodes, 1.0);
   s.p_Pa.assign(n_nodes, 4.0);
-  s.trial_traction_Pa.assign(n_nodes, 1.0);
   s.strength_Pa.assign(n_nodes, static_mu * 4.0);
+  s.onset_ratio.assign(n_nodes, 1 / (static_mu * 4.0));
   return s;
 }
 
 void set(interface::Interface& s, std::size_t node, double trial, double t, double p, bool slips) {
-  s.trial_traction_Pa[node] = trial;
   s.t_Pa[node] = t;
   s.p_Pa[node] = p;
   s.strength_Pa[node] = static_mu * p;
+  s.onset_ratio[node] = trial / (static_mu * p);
   s.slipping[node] = slips;
 }
 
@@ -131,8 +131,10 @@ TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
   // step.
   auto first = unchanged(), second = unchanged();
   first.t_Pa[2] = 1.6;
+  first.onset_ratio[2] = 0.8;
   set(second, 2, 1.92, 1.6, 4, true);
   second.strength_Pa[2] = 1.6;
+  second.onset_ratio[2] = 1.2;
   const auto record = record_of(at_rest(), first, second);
   EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1);
   EXPECT_DOUBLE_EQ(record.around_onset(0)[0].t_Pa, 1.8);
@@ -217,6 +219,7 @@ class EveryChange {
     before_.tractions.t_s_Pa = state.t_Pa;
     before_.tractions.p_s_Pa = state.p_Pa;
     strength_Pa_ = state.strength_Pa;
+    onset_ratio_ = state.onset_ratio;
     time_s_ = time_s;
   }
 
@@ -235,6 +238,7 @@ class EveryChange {
     last.t_Pa = before.tractions.t_s_Pa;
     last.p_Pa = before.tractions.p_s_Pa;
     last.strength_Pa = strength_Pa_;
+    last.onset_ratio = onset_ratio_;
     recorder.observe(time_s_, last, false);
     state.slipping.assign(state.size(), 0);
     state.slipping[i] = 1;
@@ -249,6 +253,7 @@ class EveryChange {
   record::SlipRecord record_;
   std::vector<std::uint8_t> slipping_;
   std::vector<double> strength_Pa_ = std::vector<double>(before_.tractions.x_m.size(), 0.0);
+  std::vector<double> onset_ratio_ = strength_Pa_;
   double time_s_ = 0;
 };
 
@@ -298,7 +303,7 @@ struct RandomSlip {
       if (reached) state.slipping[k] = random() > (step / 40 % 2 == 0 ? 0.2 : -0.6);
       const double ratio = random();
       state.t_Pa[k] = state.slipping[k] != 0 ? 2 : ratio > 0.5 ? 2 : 1 + ratio;
-      state.trial_traction_Pa[k] = state.slipping[k] == 0 ? state.t_Pa[k] : ratio < -0.5 ? 2 : 3 + ratio;
+      state.onset_ratio[k] = (state.slipping[k] == 0 ? state.t_Pa[k] : ratio < -0.5 ? 2 : 3 + ratio) / 2;
     }
   }
 

@@ -448,6 +448,20 @@ mu_factor = 0.9
 table_slip_rate_m_per_s = [0.0, 0.2, 1.0]
 table_mu = [0.7, 0.4, 0.3]
 """,
+    "strong": UNIFORM
+    + """
+[friction]
+law = "rate_and_state_strong"
+a = 0.01
+b = 0.014
+d_c_m = 1e-6
+f0 = 0.7
+V0_m_per_s = 1e-5
+V_i_m_per_s = 1e-8
+f_w = 0.1
+V_w_m_per_s = 0.2
+tip_slip_rate_m_per_s = 0.05
+""",
 }
 
 

@@ -35,11 +35,12 @@ inline Message kinetic_above_static() {
 /// A state variable of a law: a number at each node, remembered from one contact update to the next.
 struct LawState {
   const char *name, *unit;
-  double initial;
 };
 
 template <class Law>
-concept HasState = requires { Law::states; };
+concept HasState = requires {
+  Law::states;
+};
 
 /// What a friction law knows of the slip so far.
 enum class SlipMemory {

@@ -31,8 +31,8 @@ struct StrongWeakening<true> {
 };
 
 /// tau = p a asinh[V/(2 V0) exp(psi/a)]: rate-and-state friction, regularised so that it is odd in V (Rice et
-/// al. 2001). It never sticks. In steady sliding the coefficient is f0 + (a - b) ln(V/V0), for large arguments;
-/// with strong weakening f_w + (that - f_w) [1 + (V/V_w)^8]^(-1/8) (Dunham et al. 2011).
+/// al. 2001). It never sticks. In steady sliding the coefficient is f0 + (a - b) ln(V/V0), for large
+/// arguments; with strong weakening f_w + (that - f_w) [1 + (V/V_w)^8]^(-1/8) (Dunham et al. 2011).
 template <StateEvolution evolution>
 struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weakening> {
   static constexpr bool weakens_strongly = evolution == StateEvolution::strong_weakening;
@@ -44,7 +44,7 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
       : evolution == StateEvolution::slip ? "rate and state, slip law; never sticks"
                                           : "rate and state, slip law with strong rate weakening";
   static constexpr SlipMemory memory = SlipMemory::none;
-  static constexpr std::array<LawState, 1> states = {{{"psi", "1", 0}}};
+  static constexpr std::array<LawState, 1> states = {{{"psi", "1"}}};
 
   double a = 0.008;
   double b = 0.016;
