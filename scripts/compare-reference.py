@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs Problem A (docs/prestress.md), F (docs/two-bodies.md) or R-A (docs/friction/rate_and_state.md) on several
-meshes and compares it with other codes: table and figure."""
+"""Runs Problem A (docs/prestress.md), F (docs/two-bodies.md) or R-A (docs/friction/rate_and_state.md) on
+several meshes and compares it with other codes: table and figure."""
 
 import argparse
 import csv

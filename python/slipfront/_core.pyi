@@ -173,6 +173,14 @@ class Rupture:
     def process_zone_elements(self) -> float | None: ...
 
     @property
+    def unstable_wavelength_m(self) -> float | None:
+        """of a law with a state: longer waves of uniform sliding grow"""
+
+    @property
+    def tip_slip_rate_m_per_s(self) -> float | None:
+        """of a law with a state: beyond it a node counts as slipping"""
+
+    @property
     def trigger_length_m(self) -> float | None:
         """of the zone at an edge, or of the patch"""
 

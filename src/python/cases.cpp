@@ -221,6 +221,11 @@ void bind_rupture(nb::module_& module) {
           "process_zone_m", [](const R& r) { return r.of_nodes.process_zone_m; },
           "at rest, Palmer, Rice 1973")
       .def_ro("process_zone_elements", &R::process_zone_elements)
+      .def_prop_ro(
+          "unstable_wavelength_m", [](const R& r) { return r.of_nodes.unstable_wavelength_m; },
+          "of a law with a state: longer waves of uniform sliding grow")
+      .def_ro("tip_slip_rate_m_per_s", &R::tip_slip_rate_m_per_s,
+              "of a law with a state: beyond it a node counts as slipping")
       .def_ro("trigger_length_m", &R::trigger_length_m, "of the zone at an edge, or of the patch")
       .def_prop_ro("regime", [](const R& r) { return r.of_nodes.regime; })
       .def_ro("doubts", &R::doubts, "why nothing may rupture, a line each");

@@ -10,6 +10,9 @@
 #include <random>
 
 #include "interface/friction/coulomb.hpp"
+#include "interface/friction/rate_and_state.hpp"
+#include "stability/rupture.hpp"
+#include "stability/verdict.hpp"
 
 namespace slipfront::stability {
 namespace {
@@ -34,6 +37,41 @@ double nearest(const std::vector<Complex>& all, Complex s) {
   double distance = 1e300;
   for (const auto& other : all) distance = std::min(distance, std::abs(other - s));
   return distance;
+}
+
+/// Slow slip has no inertia: a S^2 + (a - b + K) S + K = 0 (Rice and Ruina 1983), S = s d_c/V, K = mu* k
+/// d_c/(2 p); radiation adds S V/d_c times the damping to K, of relative size 1e-3 here.
+TEST(State, SlowWavesGrowAsWithoutInertia) {
+  const auto m = undamped;
+  const interface::RateAndStateAging law;
+  const double V = 1e-3, p_Pa = 5e6, rate = V / law.d_c_m;
+  const auto sliding = uniform_sliding(law, V, p_Pa);
+  for (const double share : {0.1, 0.5, 0.9}) {
+    const double K = share * (law.b - law.a);
+    const double k = 2 * K * p_Pa / (modulus_Pa({m, m}) * law.d_c_m);
+    const double half = 0.5 * (law.b - law.a - K) / law.a;
+    const Complex below = half * half - K / law.a;
+    const Complex expected = rate * (half + std::sqrt(below));
+    const auto mode = fastest_growing_mode({m, m}, sliding, k);
+    ASSERT_TRUE(mode);
+    const Complex s = {mode->s_per_s.real(), std::abs(mode->s_per_s.imag())};
+    EXPECT_LT(std::abs(s - expected), 0.02 * std::abs(expected)) << share << " " << s << " " << expected;
+  }
+  const double k_stable = 1.1 * 2 * (law.b - law.a) * p_Pa / (modulus_Pa({m, m}) * law.d_c_m);
+  EXPECT_FALSE(fastest_growing_mode({m, m}, sliding, k_stable));
+}
+
+TEST(State, TheVerdictIsThatOfTheLongestWave) {
+  const auto m = undamped;
+  interface::RateAndStateAging law;
+  const double p_Pa = 5e6,
+               critical_m = unstable_wavelength_m(modulus_Pa({m, m}), *state_response(law, 0), p_Pa);
+  EXPECT_EQ(well_posedness({m, m}, law, p_Pa, 1e-3, 0.99 * critical_m).fastest_growth_per_s, 0);
+  const auto long_waves = well_posedness({m, m}, law, p_Pa, 1e-3, 1e4 * critical_m);
+  EXPECT_NEAR(long_waves.fastest_growth_per_s, (law.b - law.a) / law.a * law.V_i_m_per_s / law.d_c_m, 1e-6);
+  law.b = 0.5 * law.a;
+  EXPECT_EQ(well_posedness({m, m}, law, p_Pa, 1e-3, 1e3).statement,
+            "well-posed: friction strengthens with the slip rate");
 }
 
 TEST(HalfSpace, ConstantCoefficientGrowsAsInTheReference) {

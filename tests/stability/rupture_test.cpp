@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 
+#include "interface/friction/rate_and_state.hpp"
+
 namespace slipfront::stability {
 namespace {
 
@@ -79,6 +81,24 @@ TEST(Rupture, GriffithsLengthIsAndrews) {
 TEST(Rupture, FrontsPassTheShearSpeedBelowTheCriticalExcess) {
   EXPECT_NEAR(supershear_half_length_m(2, 0.77), 19.6, 1e-9);
   EXPECT_EQ(supershear_half_length_m(2, 1.77), infinity);
+}
+
+TEST(Rupture, LengthsOfALawWithAState) {
+  // Problem R-A of docs/friction/rate_and_state.md: L_b = 7.5 mm, a/b = 1/2.
+  const solid::Material m{.youngs_modulus_Pa = 3e9, .poissons_ratio = 0.33, .density_kg_per_m3 = 1180};
+  const interface::RateAndStateAging law;
+  NodeBefore node{2.65e6, 3.3e6, 2.4e6, {}, 5e6, interface::state_response(law, 0)};
+  const auto o = outlook({m, m}, {node, node});
+  const double L_b_m = 7.5e-3, pi = std::numbers::pi;
+  EXPECT_NEAR(*o.nucleation_length_m, 8 * L_b_m / pi, 1e-9);
+  EXPECT_NEAR(*o.unstable_wavelength_m, 2 * pi * L_b_m, 1e-9);
+  EXPECT_NEAR(*o.process_zone_m, 9 * pi / 32 * L_b_m, 1e-9);
+  EXPECT_THAT(o.regime, StartsWith("unknown"));
+  node.state->b = 0.03;
+  EXPECT_NEAR(nucleation_length_m(1.5e9, *node.state, 5e6), 2.7548 * 1.5e9 * 0.4e-6 / 0.15e6, 1e-9);
+  node.state->b = 0.008;
+  EXPECT_EQ(unstable_wavelength_m(1.5e9, *node.state, 5e6), infinity);
+  EXPECT_EQ(nucleation_length_m(1.5e9, *node.state, 5e6), infinity);
 }
 
 TEST(Rupture, StrengthExcess) {
