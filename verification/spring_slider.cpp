@@ -120,9 +120,9 @@ Outcome verify(Effort effort) {
     growth_found.add(share, S.real());
     frequency_found.add(share, S.imag());
     const std::string reason = "of second order in the step, 1e-2 d_c/V";
-    outcome.check(fmt::format("growth at {:.1f} k_c, of V/d_c", share), S.real(), theory.real(), 1e-3,
+    outcome.check(fmt::format("growth at {:.1f} k_c, of V/d_c", share), S.real(), theory.real(), 1e-4,
                   reason);
-    outcome.check(fmt::format("frequency at {:.1f} k_c, of V/d_c", share), S.imag(), theory.imag(), 1e-3,
+    outcome.check(fmt::format("frequency at {:.1f} k_c, of V/d_c", share), S.imag(), theory.imag(), 1e-4,
                   reason);
   }
   outcome.charts.push_back({"k/k_c",
