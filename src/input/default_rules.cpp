@@ -60,6 +60,16 @@ DefaultRule l_star_rule(const Scale& width) {
   return rule;
 }
 
+/// Under a law that never sticks slip may speed up for long before a front begins.
+DefaultRule quiet_time_rule(const Scale& crossing) {
+  auto rule = multiple_of(crossing, "time.quiet_s");
+  rule.text += "; `inf` under a friction law with a state";
+  rule.value = [share = rule.value](const Case& c) -> Value {
+    return c.friction.states().empty() ? share(c) : Value(infinity);
+  };
+  return rule;
+}
+
 /// The base's is the plate's.
 DefaultRule same_as(const std::string& plates_key, const std::string& key) {
   return {key, fmt::format("that of `{}`", plates_key),
@@ -90,9 +100,10 @@ std::vector<DefaultRule> make_default_rules() {
        "nucleation.half_length_m", "nucleation.taper_m", "fronts.min_length_m", "fronts.trigger_margin_m"});
   add(height, {"plate.fine_height_m", "plate.relief_depth_m"});
   add(base_height, {"base.fine_height_m"});
-  add(crossing, {"material.stiffness_damping_s", "event.trigger_ramp_s", "time.end_s", "time.quiet_s",
-                 "fronts.arrest_time_s", "output.history_interval_s", "output.energy_interval_s"});
+  add(crossing, {"material.stiffness_damping_s", "event.trigger_ramp_s", "time.end_s", "fronts.arrest_time_s",
+                 "output.history_interval_s", "output.energy_interval_s"});
   rules.push_back(l_star_rule(width));
+  rules.push_back(quiet_time_rule(crossing));
   // A base is like the plate unless it is said otherwise: no default makes the two sides differ.
   rules.push_back(same_as("plate.sides", "base.sides"));
   rules.push_back(bottom_rule());

@@ -73,6 +73,20 @@ def test_a_rupture_is_that_of_its_case(name):
     require_same(made["compose"](), slips_of_run(**tables))
 
 
+def test_a_law_with_a_state_moves_as_in_its_case():
+    tables = {"plate": PLATE | {"corner": "none"}, "material": {"plane": "strain"}}
+    law = {"law": "rate_and_state_slip", "d_c_m": 1e-6, "V_i_m_per_s": 0.1}
+    body = slipfront.Body(slipfront.Mesh(**tables["plate"]), **tables["material"])
+    with pytest.raises(slipfront.CaseError, match="friction.tip_slip_rate_m_per_s has no default here"):
+        slipfront.Stepper(body, slipfront.Interface(**law))
+    law["tip_slip_rate_m_per_s"] = 0.01
+    composed = slipfront.Stepper(body, slipfront.Interface(**law))
+    composed.start(t_Pa=3.6e6, p_Pa=5e6)  # more than steady sliding takes
+    loading = {"loading": {"method": "prestress"}, "prestress": {"t_Pa": 3.6e6, "p_Pa": 5e6}}
+    case = tables | loading | {"friction": law, "event": {"kind": "none"}, "time": {"end_s": 100e-6}}
+    require_same(composed, slips_of_run(**case))
+
+
 def test_a_start_from_statics_is_that_of_its_case():
     tables = {
         "plate": PLATE | {"width_m": 0.1, "height_m": 0.05, "corner": "relief"},
