@@ -57,10 +57,6 @@ Peak fastest_between(const Bodies& bodies, const Sliding& sliding, double low, d
   return best;
 }
 
-double damping_length_m(const solid::Material& material) {
-  return material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
-}
-
 std::string statement_of(const WellPosedness& w, bool pressure_changes) {
   const bool drops = w.weakening_over_radiation > 1;
   if (w.unbounded)
@@ -87,6 +83,17 @@ std::string statement_of(const WellPosedness& w, bool pressure_changes) {
 }
 
 }  // namespace
+
+double slower_c_L_m_per_s(const Bodies& bodies) {
+  const double above = solid::longitudinal_speed_m_per_s(bodies.above);
+  return bodies.below ? std::min(above, solid::longitudinal_speed_m_per_s(*bodies.below)) : above;
+}
+
+double damping_length_m(const Bodies& bodies) {
+  const double above_s = bodies.above.stiffness_damping_s;
+  return (bodies.below ? std::max(above_s, bodies.below->stiffness_damping_s) : above_s) *
+         slower_c_L_m_per_s(bodies);
+}
 
 double radiation_damping_Pa_s_per_m(const Bodies& bodies) {
   const auto yields = [](const solid::Material& m) {
@@ -146,7 +153,7 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
     if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
   }
   w.growth_in_crossing = w.fastest_growth_per_s * element_size_m / fastest_speed_m_per_s;
-  w.damping_length_m = std::min(damping_length_m(bodies.above), damping_length_m(other));
+  w.damping_length_m = damping_length_m(bodies);
   w.damping_length_over_h = w.damping_length_m / element_size_m;
   w.statement = statement_of(w, !are_alike(bodies));
   return w;
