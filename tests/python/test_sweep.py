@@ -447,7 +447,9 @@ def test_one_point_that_fails_leaves_the_others(case, capsys):
     assert printed[-1] == "results: out" and printed[-2].startswith("failed: time.step_factor = 1.5: ")
     assert [line.split()[:2] for line in printed[-4:-2]] == [["0.9", "done"], ["1.5", "failed"]]
     good, bad = rows_of()
-    assert good["status"] == "done" and float(good["n_fronts"]) >= 1 and good["message"] == ""
+    assert good["status"] == "done" and float(good["n_fronts"]) >= 1
+    notes = json.loads(Path("out", good["folder"], "run.json").read_text())["warnings"]
+    assert notes and good["message"] == "; ".join(notes)
     assert bad["status"] == "failed" and bad["n_fronts"] == "" and "energy" in bad["message"]
     data = notebook.open_sweep("out")
     assert np.isnan(data.n_fronts.sel(step_factor=1.5)) and data.n_fronts.sel(step_factor=0.9) >= 1
