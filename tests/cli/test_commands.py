@@ -95,7 +95,7 @@ def test_info_tells_whether_sliding_is_well_posed(program, coarse):
     [
         ("friction", 15, 40),
         ("friction.d_c_m", 2, 2),
-        ("mu_k", 5, 9),
+        ("mu_k", 3, 9),
         ("plate.width_m", 1, 1),
         ("title", 1, 1),
     ],
