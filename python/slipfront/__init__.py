@@ -6,7 +6,10 @@ Nothing is imported before it is used: figures and readers need neither xarray n
 
 from difflib import get_close_matches
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
+
+from slipfront.errors import NEEDS_MODULE
 
 if TYPE_CHECKING:
     from slipfront._core import Body as Body
@@ -98,7 +101,12 @@ def __getattr__(name: str) -> Any:
         near = get_close_matches(name, _PLACES, n=1)
         hint = f"; did you mean {near[0]}?" if near else ""
         raise AttributeError(f"module 'slipfront' has no attribute '{name}'{hint}")
-    return getattr(import_module(f"slipfront.{_PLACES[name]}"), name)
+    try:
+        return getattr(import_module(f"slipfront.{_PLACES[name]}"), name)
+    except ImportError as error:
+        if find_spec("slipfront._core"):
+            raise
+        raise ImportError(f"slipfront.{name} needs {NEEDS_MODULE}") from error
 
 
 def __dir__() -> list[str]:

@@ -8,7 +8,7 @@ import os
 import sys
 
 from slipfront.command import REFUSED, report_error, run
-from slipfront.errors import Error
+from slipfront.errors import NEEDS_MODULE, Error
 from slipfront.program import program
 
 #: By their words, the module whose `main(arguments)` returns the exit code. It is imported when it is wanted.
@@ -53,8 +53,7 @@ def main(arguments: list[str]) -> int:
     except ImportError as error:
         if not (error.msg or "").startswith("cannot import name '_core'"):
             raise
-        how = "in the sources, 'make module' builds it; elsewhere 'pip install .' does"
-        report_error("slipfront", f"{name}: needs the compiled module of the Python package: {how}")
+        report_error("slipfront", f"{name}: needs {NEEDS_MODULE}")
         return REFUSED
     code: int = module.main(arguments[len(name.split()) :])
     return code

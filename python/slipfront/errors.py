@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the package raises; the text of each is one line, the one that the program prints."""
 
+#: Of names and commands.
+NEEDS_MODULE = "the compiled module: in the sources, 'make module' builds it; elsewhere 'pip install .' does"
+
 
 def one_line(text: str) -> str:
     """The text without line breaks, control characters and bytes that no encoding prints."""

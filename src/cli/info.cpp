@@ -55,12 +55,13 @@ void add_size(const run::Info& info, Listing& list) {
 }
 
 void add_steps(const input::Case& config, const run::Info& info, Listing& list) {
-  list.add("largest stable step", fmt::format("{:.4g} s", info.stable_step_s));
+  list.add("largest stable step", fmt::format("{:.4g} s{}", info.stable_step_s,
+                                              info.base_speeds ? ", the smaller one of the bodies" : ""));
   list.add("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
                                config.time.interface_rows));
   if (info.base_speeds)
     list.add("sub-steps in a step",
-             fmt::format("{} of the plate, {} of the base, {} in a common one",
+             fmt::format("of the plate {}, of the base {}, in the step above {}",
                          info.substeps_of_bodies.front(), info.substeps_of_bodies.back(),
                          std::lcm(info.substeps_of_bodies.front(), info.substeps_of_bodies.back())));
   list.add("steps to the end", fmt::format("{}", info.n_steps));

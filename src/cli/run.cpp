@@ -118,7 +118,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
           1e6 * front.points.back().onset_s, speed_text(front, result.speeds), fronts::name(front.mode),
           fronts::name(front.end));
   }
-  print_rupture(run::rupture_outlook(result.config, initial.common));
+  print_rupture(run::rupture_outlook(result.config, initial.common, initial.tributary_m));
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
 }

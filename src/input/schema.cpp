@@ -610,8 +610,9 @@ width 0.2 m and c_S 889 m/s, the values chosen for it: an end at 1.1 ms, a quiet
 }
 
 std::string schema_reference_of(const std::string& part) {
-  std::string text =
-      reference_of([&](const Entry& entry) { return entry.key == part || table_of(entry.key) == part; });
+  std::string text = reference_of([&](const Entry& entry) {
+    return entry.key == part || table_of(entry.key) == part || leaf_of(entry.key) == part;
+  });
   if (!text.empty()) return text;
   std::vector<std::string> keys = tables_of(common_entries());
   for (const Entry& entry : common_entries()) keys.push_back(entry.key);

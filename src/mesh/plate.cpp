@@ -83,8 +83,7 @@ std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string
   const Key coarsenings(fmt::format("{}.coarsenings", table));
   if (plate.coarsenings < 0) throw UserError("{} = {} must not be negative", coarsenings, plate.coarsenings);
   require_positive(plate.fine_height_m, "plate.fine_height_m");
-  const bool periodic = plate.sides == Sides::periodic;
-  const int divisor = periodic ? 4 : 2;
+  const int divisor = plate.sides == Sides::periodic ? 4 : 2;  // columns stay even where they are periodic
   std::vector<Grid> grids;
   Grid block = whole;
   int rows_left = whole.rows;  // of the block's squares, up to the loaded edge
@@ -95,10 +94,9 @@ std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string
     } else {
       if (block.columns % divisor != 0)
         throw UserError(
-            "{} = {} needs a number of columns of elements that can be halved so often{}; {} columns can {} "
-            "times: choose fewer, or another {}",
-            coarsenings, plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "",
-            whole.columns, k, Key("plate.element_size_m"));
+            "{} = {} needs a multiple of {:g} columns of elements, not {}; choose fewer, or another {}",
+            coarsenings, plate.coarsenings, divisor * std::exp2(plate.coarsenings - 1), whole.columns,
+            Key("plate.element_size_m"));
       const double min_m = k == 0 ? plate.fine_height_m : below_m;
       const double least = std::max(1.0, std::ceil(min_m / block.spacing_m - whole_tolerance));
       if (least + 4 > rows_left)

@@ -58,6 +58,14 @@ stability::Bodies bodies_of(const input::Case& config) {
   return both;
 }
 
+double advised_damping_s(const input::Case& config) {
+  const double least_s = stability::damping_of_grid_waves_s(
+      bodies_of(config), config.friction, config.regularisation, config.plate.element_size_m);
+  if (least_s == 0) return 0;
+  const double digit_s = std::pow(10, std::floor(std::log10(least_s)) - 2);
+  return digit_s * std::ceil((1 - 1e-9) * least_s / digit_s);
+}
+
 statics::StaticSolver wanted_solver(const input::Case& config) {
   const auto shape = [](const mesh::Plate& plate) {
     return statics::Shape{std::round(plate.width_m / plate.element_size_m),

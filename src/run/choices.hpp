@@ -34,6 +34,9 @@ double fastest_speed_m_per_s(const input::Case& config);
 /// The materials on both sides of the interface.
 stability::Bodies bodies_of(const input::Case& config);
 
+/// stability::damping_of_grid_waves_s rounded up to three digits, as notes print it.
+double advised_damping_s(const input::Case& config);
+
 /// What the plate's shape leaves of loading.solver.
 statics::StaticSolver wanted_solver(const input::Case& config);
 

@@ -272,7 +272,7 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
   add_sizes(config, meshes, info);
   if (const auto loaded = loaded_state(config, meshes)) {
     info.loads = loaded->loads;
-    info.rupture = rupture_outlook(config, loaded->common);
+    info.rupture = rupture_outlook(config, loaded->common, mesh::tributary_lengths_m(meshes.plate));
   } else {
     info.rupture = rupture_outlook(config, meshes);
   }

@@ -20,12 +20,12 @@ constexpr double max_columns = 1e6;
 double needed_elements(const input::Case& config, const RuptureOutlook& rupture) {
   const auto bodies = bodies_of(config);
   double n = elements_for_peaks;
-  if (stability::are_alike(bodies) && may_pass_c_S(rupture.of_nodes.S.median)) n = elements_for_transition;
+  if (may_pass_c_S(bodies, rupture.of_nodes.S.median)) n = elements_for_transition;
   // Damping of waves of the mesh, beta_R = a h/c_S, stays harmless to the zone Z, beta_R c_L <= b Z.
   const double h_m = config.plate.element_size_m;
   const double damping_s =
       stability::damping_of_grid_waves_s(bodies, config.friction, config.regularisation, h_m);
-  return std::max(n, damping_s * fastest_speed_m_per_s(config) / (harmless_damping * h_m));
+  return std::max(n, damping_s * stability::slower_c_L_m_per_s(bodies) / (harmless_damping * h_m));
 }
 
 bool is_whole(double count) {

@@ -163,16 +163,15 @@ void add_damping(const input::Case& config, Notes& notes) {
         fmt::format("the two bodies are of one material, but material.stiffness_damping_s is {:g} and "
                     "base.stiffness_damping_s {:g}: waves and slip are not symmetric",
                     of_plate_s, bodies.below->stiffness_damping_s));
-  const double needed_s = stability::damping_of_grid_waves_s(bodies, config.friction, config.regularisation,
-                                                             config.plate.element_size_m);
+  const double advised_s = advised_damping_s(config);
   const double least_s = std::min(of_plate_s, bodies.below ? bodies.below->stiffness_damping_s : of_plate_s);
-  if (least_s < (1 - 1e-9) * needed_s)
+  if (least_s < (1 - 1e-9) * advised_s)
     notes.push_back(fmt::format(
         "friction follows the pressure at once between bodies that differ, with damping of {:g} s: waves of "
-        "3 to 4 elements can grow on the mesh alone, and arrivals be wrong; {} = {:.2g} damps them (or use "
+        "3 to 4 elements can grow on the mesh alone, and arrivals be wrong; {} = {:.3g} damps them (or use "
         "[friction] regularisation)",
         least_s, bodies.below ? "stiffness_damping_s of both bodies" : "material.stiffness_damping_s",
-        needed_s));
+        advised_s));
 }
 
 /// A free side bears no shear.

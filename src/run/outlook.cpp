@@ -10,7 +10,9 @@
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
 #include "input/pressure.hpp"
+#include "motion/trigger_zone.hpp"
 #include "run/choices.hpp"
+#include "stability/verdict.hpp"
 #include "statics/prestress.hpp"
 
 namespace slipfront::run {
@@ -106,9 +108,9 @@ std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) 
   const double min_m = interface::is_at_edge(config.event) ? 0.5 * critical_m : critical_m;
   if (o.trigger_length_m && *o.trigger_length_m < min_m)
     return fmt::format(
-        "the trigger's {:.3g} m are less than the {:.3g} m from which a crack runs (Griffith): slip may stop "
-        "near them",
-        *o.trigger_length_m, min_m);
+        "the trigger's {:.3g} m are less than the {:.3g} m from which a crack runs (Griffith{}): slip may "
+        "stop near them",
+        *o.trigger_length_m, min_m, min_m < critical_m ? "; at an edge half the critical length" : "");
   if (critical_m > config.plate.width_m)
     return fmt::format("a crack runs from {:.3g} m on (Griffith), longer than the interface", critical_m);
   return {};
@@ -127,33 +129,43 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Ruptu
   return doubts;
 }
 
-std::string caution_of_mesh(double zone_elements, double S) {
+std::string caution_of_mesh(double zone_elements, bool may_pass_c_S) {
   const auto is =
       fmt::format("the process zone has {:.3g} elements at rest and fewer in motion", zone_elements);
   if (zone_elements < fewest_elements) return is + "; below 3 the mesh decides on fronts and their speeds";
   if (zone_elements < elements_for_peaks) return is + "; peaks of slip rate and traction need 6";
-  if (zone_elements < elements_for_transition && may_pass_c_S(S))
+  if (zone_elements < elements_for_transition && may_pass_c_S)
     return is + "; the place where fronts pass c_S, where S < 1.77, needs 16";
   return {};
 }
 
-double damping_length_m(const stability::Bodies& bodies) {
-  const auto of = [](const solid::Material& m) {
-    return m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
-  };
-  return std::max(of(bodies.above), bodies.below ? of(*bodies.below) : 0);
+/// Empty, or that the trigger's force acts against the shear.
+std::string caution_of_trigger(const input::Case& config, const statics::Equilibrium& before,
+                               std::span<const double> tributary_m) {
+  if (!interface::is_at_edge(config.event) || config.trigger.form == TriggerForm::weakened) return {};
+  const auto zone = motion::trigger_zone(before, config.event, config.trigger.zone_m);
+  const double direction = motion::load_direction(before, tributary_m, zone);
+  if (direction * statics::contact_force(before, tributary_m).shear_N_per_m >= 0) return {};
+  return fmt::format("the trigger acts to {}x, against the shear, as its zone is loaded before the event",
+                     direction < 0 ? '-' : '+');
 }
 
 void add_cautions(const input::Case& config, RuptureOutlook& o) {
   if (!o.process_zone_elements) return;
-  if (auto caution = caution_of_mesh(*o.process_zone_elements, o.of_nodes.S.median); !caution.empty())
+  const auto bodies = bodies_of(config);
+  if (auto caution = caution_of_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median));
+      !caution.empty())
     o.cautions.push_back(std::move(caution));
-  const double length_m = damping_length_m(bodies_of(config)), zone_m = *o.of_nodes.process_zone_m;
-  if (length_m > harmless_damping * zone_m)
+  const double length_m = stability::damping_length_m(bodies);
+  const double harmless_m = harmless_damping * *o.of_nodes.process_zone_m;
+  const double advised_m = advised_damping_s(config) * stability::slower_c_L_m_per_s(bodies);
+  if (length_m > harmless_m)
     o.cautions.push_back(fmt::format(
-        "damping: beta_R c_L = {:.3g} m is {:.2g} % of the process zone; beyond 2 % it changes speeds and "
-        "whether and where fronts pass c_S; choose a smaller stiffness_damping_s, or compare with one",
-        length_m, 100 * length_m / zone_m));
+        "damping: beta_R c_L = {:.3g} m is {:.3g} % of the process zone; beyond 2 % it changes speeds and "
+        "whether and where fronts pass c_S; choose {}, or compare with one",
+        length_m, 100 * length_m / *o.of_nodes.process_zone_m,
+        advised_m > harmless_m ? "a smaller plate.element_size_m, which needs less damping"
+                               : "a smaller stiffness_damping_s"));
 }
 
 RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed) {
@@ -182,17 +194,21 @@ void add_doubts(const input::Case& config, const std::vector<Placed>& placed, Ru
 
 }  // namespace
 
-RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before) {
+RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
+                               std::span<const double> tributary_m) {
   const auto placed = nodes_inside(config, before);
   auto o = outlook_of(config, placed);
   add_doubts(config, placed, o);
+  if (auto caution = caution_of_trigger(config, before, tributary_m); !caution.empty())
+    o.cautions.push_back(std::move(caution));
   return o;
 }
 
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) {
   if (is_prestressed(config))
     return rupture_outlook(
-        config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)));
+        config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)),
+        mesh::tributary_lengths_m(meshes.plate));
   const double p_Pa = input::nominal_pressure_Pa(config);
   const double strength_Pa = interface::static_coefficient(config.friction) * p_Pa;
   auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});

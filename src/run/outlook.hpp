@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,16 +29,19 @@ struct RuptureOutlook {
 /// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005), which peaks
 /// need, and which the place needs where fronts pass c_S.
 inline constexpr double fewest_elements = 3, elements_for_peaks = 6, elements_for_transition = 16;
-/// Whether fronts may pass c_S, as far as S tells; it is not a number where it is unknown.
-inline bool may_pass_c_S(double S) {
-  return !(S >= stability::supershear_S);
+/// Whether fronts may pass c_S, as far as S tells: between equal bodies. It is not a number where it is
+/// unknown.
+inline bool may_pass_c_S(const stability::Bodies& bodies, double S) {
+  return stability::are_alike(bodies) && !(S >= stability::supershear_S);
 }
 /// Damping length over the process zone; more moves the place where fronts pass c_S by more than some per
 /// cent.
 inline constexpr double harmless_damping = 0.02;
 
 /// Of a case whose state before the event is known.
-RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before);
+/// @param tributary_m  [interface nodes]
+RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
+                               std::span<const double> tributary_m);
 /// Of a case alone, whose tractions are known where they are prescribed.
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes);
 

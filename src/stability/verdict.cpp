@@ -58,10 +58,6 @@ Peak fastest_between(const Bodies& bodies, const Sliding& sliding, double low, d
   return best;
 }
 
-double damping_length_m(const solid::Material& material) {
-  return material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
-}
-
 std::string statement_of(const WellPosedness& w, bool pressure_changes) {
   const bool drops = w.weakening_over_radiation > 1;
   if (w.unbounded)
@@ -88,6 +84,17 @@ std::string statement_of(const WellPosedness& w, bool pressure_changes) {
 }
 
 }  // namespace
+
+double slower_c_L_m_per_s(const Bodies& bodies) {
+  const double above = solid::longitudinal_speed_m_per_s(bodies.above);
+  return bodies.below ? std::min(above, solid::longitudinal_speed_m_per_s(*bodies.below)) : above;
+}
+
+double damping_length_m(const Bodies& bodies) {
+  const double above_s = bodies.above.stiffness_damping_s;
+  return (bodies.below ? std::max(above_s, bodies.below->stiffness_damping_s) : above_s) *
+         slower_c_L_m_per_s(bodies);
+}
 
 double radiation_damping_Pa_s_per_m(const Bodies& bodies) {
   const auto yields = [](const solid::Material& m) {
@@ -158,7 +165,7 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
   w.sliding = uniform_sliding(law, 0, pressure_Pa, regularisation);
   w.grid_wavelength_m = 2 * element_size_m;
   w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
-  w.damping_length_m = std::min(damping_length_m(bodies.above), damping_length_m(other));
+  w.damping_length_m = damping_length_m(bodies);
   w.damping_length_over_h = w.damping_length_m / element_size_m;
   w.weakening_over_radiation =
       0 - w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);

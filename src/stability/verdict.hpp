@@ -23,8 +23,7 @@ struct WellPosedness {
   double longest_wavelength_m = 0;  ///< of the search
   /// Fastest growth times h/c_L, of two bodies the faster one's: above 1 no step follows it.
   double growth_in_crossing = 0;
-  /// beta_R c_L, of two bodies the smaller: much shorter waves are overdamped.
-  double damping_length_m = 0;
+  double damping_length_m = 0;  ///< beta_R c_L: much shorter waves are overdamped
   double damping_length_over_h = 0;
   std::string statement;  ///< one plain line
 };
@@ -33,6 +32,12 @@ struct WellPosedness {
 WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw& law, double pressure_Pa,
                              double element_size_m, double longest_wavelength_m,
                              const interface::Regularisation& regularisation = {});
+
+double slower_c_L_m_per_s(const Bodies& bodies);
+
+/// beta_R c_L, of two bodies the larger beta_R times the slower c_L: a front, which the slower body bounds,
+/// makes waves of one frequency in both.
+double damping_length_m(const Bodies& bodies);
 
 /// Shear traction per slip rate of waves that leave the interface at right angles: G/c_S on the rigid plane,
 /// of two bodies half the harmonic mean.

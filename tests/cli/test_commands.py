@@ -92,7 +92,13 @@ def test_info_tells_whether_sliding_is_well_posed(program, coarse):
 
 @pytest.mark.parametrize(
     "part, least, most",
-    [("friction", 15, 60), ("friction.d_c_m", 5, 5), ("plate.width_m", 1, 1), ("title", 1, 1)],
+    [
+        ("friction", 15, 60),
+        ("friction.d_c_m", 5, 5),
+        ("mu_k", 3, 9),
+        ("plate.width_m", 1, 1),
+        ("title", 1, 1),
+    ],
 )
 def test_a_part_of_the_reference(program, part, least, most):
     """Its rows are those of the whole, under the same headings."""

@@ -28,6 +28,14 @@ def case(write_case):
     return write_case(CASE)
 
 
+def test_a_trigger_against_the_shear_is_told(program, case):
+    note = "note: the trigger acts to -x, against the shear"
+    lightly = "loading.shear_over_critical=0.1"  # less than compression pushes the corner outwards
+    for command in (("info",), ("run", "--overwrite", "-o", "out")):
+        assert note in require_done(program(*command, case, *sets(lightly))).stdout
+        assert note not in require_done(program(*command, case, *sets(lightly, "event.kind=right"))).stdout
+
+
 def force(folder, column):
     """Sum of a traction of static.csv over the interface, whose outer nodes have half an element."""
     table = np.genfromtxt(folder / "static.csv", delimiter=",", names=True, comments="#")

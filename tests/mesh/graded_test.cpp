@@ -126,14 +126,16 @@ TEST(GradedPlate, PeriodicSidesJoinEveryBlock) {
     for (int j = 0; j <= grid.rows; ++j)
       EXPECT_TRUE(orphan[grid.node(grid.columns, j)] && !orphan[grid.node(0, j)]) << j;
   plate.width_m = 0.042;
-  EXPECT_THAT([&] { make_plate(plate); }, ThrowsMessage<UserError>(HasSubstr("stay even")));
+  EXPECT_THAT([&] { make_plate(plate); },
+              ThrowsMessage<UserError>(HasSubstr("multiple of 8 columns of elements, not 42;")));
 }
 
 TEST(GradedPlate, SaysWhatDoesNotFit) {
   auto plate = graded(Corner::none, 4);
   EXPECT_THAT([&] { make_plate(plate); }, ThrowsMessage<UserError>(HasSubstr("no room for the largest")));
   plate.height_m = 0.4;
-  EXPECT_THAT([&] { make_plate(plate); }, ThrowsMessage<UserError>(HasSubstr("40 columns can 3 times")));
+  EXPECT_THAT([&] { make_plate(plate); },
+              ThrowsMessage<UserError>(HasSubstr("multiple of 16 columns of elements, not 40;")));
   plate = graded(Corner::fillet, 1);
   plate.fillet_radius_m = 5e-3;
   EXPECT_THAT([&] { make_plate(plate); }, ThrowsMessage<UserError>(HasSubstr("plate.fine_height_m")));

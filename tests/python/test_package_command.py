@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import re
+import shutil
 import sys
 
 import numpy as np
@@ -131,6 +132,16 @@ def test_figures_need_neither_xarray_nor_the_module():
         "sys.exit(any(name in sys.modules for name in ('xarray', 'slipfront._core')))"
     )
     require_done(call(sys.executable, "-c", code, env=WITH_PACKAGE))
+
+
+def test_without_the_module_names_say_what_they_need(tmp_path):
+    leave = shutil.ignore_patterns("_core.*.so", "__pycache__")
+    shutil.copytree(ROOT / "python/slipfront", tmp_path / "slipfront", ignore=leave)
+    for name in ("Mesh", "run", "find_fronts"):
+        code = f"import slipfront; slipfront.DataError; slipfront.{name}"
+        ended = call(sys.executable, "-c", code, env={**WITH_PACKAGE, "PYTHONPATH": str(tmp_path)})
+        last = ended.stderr.splitlines()[-1]
+        assert last.startswith(f"ImportError: slipfront.{name} needs the compiled module: "), ended.stderr
 
 
 def test_the_names_of_the_package_are_all_there():

@@ -17,6 +17,7 @@ import pandas as pd
 import pytest
 from common import HANG_S, wait_until
 from distributed import LocalCluster
+from slipfront.figures.__main__ import main as draw_figures
 from slipfront.files import DataError
 from slipfront.folder import verify_checksums
 from slipfront.sweep import maps, notebook, report
@@ -447,7 +448,10 @@ def test_one_point_that_fails_leaves_the_others(case, capsys):
     assert printed[-1] == "results: out" and printed[-2].startswith("failed: time.step_factor = 1.5: ")
     assert [line.split()[:2] for line in printed[-4:-2]] == [["0.9", "done"], ["1.5", "failed"]]
     good, bad = rows_of()
-    assert good["status"] == "done" and float(good["n_fronts"]) >= 1 and good["message"] == ""
+    assert good["status"] == "done" and float(good["n_fronts"]) >= 1
+    notes = json.loads(Path("out", good["folder"], "run.json").read_text())["warnings"]
+    assert notes and good["message"] == "; ".join(notes)
+    assert draw_figures(["out"]) == 2 and "slipfront.sweep.maps PICTURE DIR" in capsys.readouterr().err
     assert bad["status"] == "failed" and bad["n_fronts"] == "" and "energy" in bad["message"]
     data = notebook.open_sweep("out")
     assert np.isnan(data.n_fronts.sel(step_factor=1.5)) and data.n_fronts.sel(step_factor=0.9) >= 1

@@ -27,6 +27,7 @@ from slipfront.figures.picture import FIXED_NAMES
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
 from slipfront.figures.style import RC
+from slipfront.files import DataError
 from slipfront.folder import UNFINISHED, belongs, inside
 
 BOTH = ("png", "pdf")
@@ -95,6 +96,8 @@ def write_figures(folder: Path, experiment: Path | None, kinds: Sequence[str] = 
             return write_single(folder, kinds, lambda: (open_choices.draw(folder), []))
         if is_single_run(folder):
             return write_single(folder, kinds, lambda: balance.balance_of_run(folder))
+        if belongs(folder / "sweep.json"):
+            raise DataError(f"{folder}: is of a sweep: python -m slipfront.sweep.maps PICTURE DIR draws it")
         return write_reproduction(folder, kinds, experiment)
 
 

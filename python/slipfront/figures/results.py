@@ -156,7 +156,7 @@ def read_results(
 ) -> Results:
     """A folder of `slipfront reproduce`; `read` reads one of its runs."""
     if not is_folder(folder):
-        raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
+        raise DataError(f"{folder}: no such folder; DIR is of `slipfront reproduce`, `study` or `run`")
     runs = {name: read(located(folder / name)) for name in (*EVENTS, HIGH_MU_K)}
     file = folder / "analysis.json"
     analysis = read_json_table(result_file(file))

@@ -157,12 +157,14 @@ def entry_of(c: Comparison, tolerance: float) -> dict[str, Any]:
 
 
 def table(comparisons: list[Comparison], tolerance: float) -> list[str]:
-    form = "{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}"
-    lines = [form.format("parameter", "fronts", "error", "order", "growth", "stations", "verdict")]
+    form = "{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>7}  {:>8}  {}"
+    heads = ("parameter", "fronts", "error", "of 90 %", "order", "growth", "stations", "verdict")
+    lines = [form.format(*heads)]
     for c in comparisons:
         for direction, fronts in FRONTS.items():
             s, key = c.summary(direction, tolerance), "" if direction else c.plan.key
-            seen = printed(s.median_relative_error, " %", 100), printed(s.median_order), printed(s.growth)
+            errors = printed(s.median_relative_error, " %", 100), printed(s.p90_relative_error, " %", 100)
+            seen = *errors, printed(s.median_order), printed(s.growth)
             lines.append(form.format(key, fronts, *seen, f"{s.n_stations}/{s.n_stations_of_case}", s.verdict))
         values = " ".join(f"{value:.4g}" for value in c.plan.values)
         at_limit = printed(c.difference_at_limit, " % from the extrapolated", 100)
@@ -176,9 +178,10 @@ def work(study: Study) -> Printed:
     plans = plans_of(study.case, options.element_sizes)
     l_star_m = max(study.case["fronts.l_star_m"], plans[0].values[0])
     points = points_of(plans)
+    line = "--element-sizes" if options.element_sizes else "give --element-sizes that fit"
     # The finest mesh takes longest: first.
     unique = {tuple(point.values()): point for of_plan in points for point in reversed(of_plan)}
-    runs = study.run(list(unique.values()), {"fronts.l_star_m": l_star_m}, {SIZE: "--element-sizes"})
+    runs = study.run(list(unique.values()), {"fronts.l_star_m": l_star_m}, {SIZE: line})
     by_point = dict(zip(unique, runs, strict=True))
     comparisons, warnings = [], []
     for plan, of_plan in zip(plans, points, strict=True):

@@ -15,7 +15,7 @@ import numpy as np
 
 from slipfront.study.runs import Printed, Study, make_parser, number, numbers, printed
 from slipfront.study.runs import main as study_main
-from slipfront.study.sequence import FEWEST_STATIONS, UNDEFINED, extrapolate, median
+from slipfront.study.sequence import FEWEST_STATIONS, UNDEFINED, extrapolate, median, p90
 from slipfront.study.speeds import Place, Run
 from slipfront.sweep.values import Value
 
@@ -61,10 +61,8 @@ class Stepping:
     def against(self, limit_m_per_s: np.ndarray) -> Stepping:
         """With its errors."""
         errors = np.abs(self.v_m_per_s / limit_m_per_s - 1)
-        errors = np.sort(errors[np.isfinite(errors)])
-        n = len(errors)
-        p90 = float(errors[(9 * n + 9) // 10 - 1]) if n else UNDEFINED
-        return replace(self, median_error=median(errors), p90_error=p90, n_stations=n)
+        n = int(np.isfinite(errors).sum())
+        return replace(self, median_error=median(errors), p90_error=p90(errors), n_stations=n)
 
 
 def updates_per_s(run: Run) -> float:

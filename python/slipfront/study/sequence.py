@@ -81,12 +81,19 @@ def median(values: np.ndarray) -> float:
     return float(np.median(defined)) if defined.size else UNDEFINED
 
 
+def p90(values: np.ndarray) -> float:
+    """Nine tenths of the defined ones are at most so large."""
+    defined = np.sort(values[np.isfinite(values)])
+    return float(defined[(9 * len(defined) + 9) // 10 - 1]) if defined.size else UNDEFINED
+
+
 @dataclass(frozen=True)
 class Summary:
     """A sequence over its stations; medians, so that single stations do not decide."""
 
     verdict: str
     median_relative_error: float
+    p90_relative_error: float  # at least nine tenths of the stations are within it
     median_order: float  # of the stations that have one
     growth: float  # last difference over the first one, per ln q
     n_stations: int  # with all values
@@ -105,4 +112,4 @@ def summarise(error: np.ndarray, order: np.ndarray, differences: np.ndarray, tol
     verdict = CONVERGED if of_case <= tolerance else NOT_CONVERGED if growth < 1 else NO_LIMIT
     if n < FEWEST_STATIONS or 2 * n < len(error):
         verdict = TOO_FEW
-    return Summary(verdict, of_case, median(order[known]), growth, n, len(error))
+    return Summary(verdict, of_case, p90(error), median(order[known]), growth, n, len(error))

@@ -131,9 +131,8 @@ def mark_waves(ax: MplAxes, waves: dict[str, float]) -> None:
     for wave, level in waves.items():
         ax.axhline(level, color="white" if is_bar else "0.5", linewidth=0.8, gid=wave)
         name = rf"$c_\mathrm{{{wave[-1]}}}$"
-        ax.text(
-            -0.2 if is_bar else 0, level, name, ha="right", va=WAVES[wave], transform=ax.get_yaxis_transform()
-        )
+        x, ha = (-0.2, "right") if is_bar else (1.01, "left")  # beside the scale's numbers
+        ax.text(x, level, name, ha=ha, va=WAVES[wave], transform=ax.get_yaxis_transform())
 
 
 def write_values(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from slipfront.files import DataError, exists
+from slipfront.files import DataError, exists, read_json_table
 from slipfront.folder import LIST, located, publication, result_file, sha256
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
@@ -40,20 +40,21 @@ PRINTED = {
 }
 TEXTS = {
     "status": "whether the run came to its end",
-    "message": "why a point has no results",
+    "message": "why a point has no results, or the notes on its run",
     "folder": "results of the run",
 }
 
 
 def row_of(folder: Path, point: Point) -> dict[str, Cell]:
-    """A point's values as texts and what came out of it; without results, `message` says why."""
+    """A point's values as texts and what came out of it; `message` has notes or says why nothing did."""
     place = places.place_of(folder, point)
     values: dict[str, Cell] = {key: text_of(value) for key, value in point.values.items()}
     row = values | {"folder": f"{places.POINTS}/{point.name}"}
     try:
         wrong = places.what_is_wrong(place, point)
         if wrong is None:
-            return row | {"status": DONE, "message": ""} | read_outcome(place)
+            notes = "; ".join(read_json_table(place / "run.json").get("warnings", []))
+            return row | {"status": DONE, "message": notes} | read_outcome(place)
     except DataError as error:
         wrong = str(error)
     failure = places.failure_of(folder, point)
@@ -82,7 +83,9 @@ def table_lines(table: pd.DataFrame, folder: Path) -> list[str]:
     text = shown.to_string(
         index=False, na_rep="-", float_format="{:.3g}".format, line_width=120, max_colwidth=24
     )
-    lines = ["slip, length_m, V_tip/c_L (median) and end are of the longest front:", *text.split("\n")]
+    n_noted = int(((table.status == DONE) & (table.message != "")).sum())
+    lines = [f"note: {n_noted} runs have notes: message in {folder / TABLE}"] if n_noted else []
+    lines += ["slip, length_m, V_tip/c_L (median) and end are of the longest front:", *text.split("\n")]
     if len(table) > MOST_ROWS:
         lines.append(f"... {len(table) - MOST_ROWS} more in {folder / TABLE}")
     return lines
