@@ -133,17 +133,17 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, 
 
   V& psi = n.law_states[0];
   const V v_trial = n.v_x_m_per_s;
-  const V a_p = law.a * p, s = psi / law.a;
-  const V knee = law.V0_m_per_s * exp_minus(s);  // beyond it t is a p ln V
-  const V stiffness = a_p / (absolute(last_rate) + knee);
-  V w = select(stiffness > 2 * impedance_x, 1 - impedance_x / stiffness, V{} + 0.5);
+  const V a_p = law.a * p, s = psi * law.per_a, per_a_p = 1 / a_p;
+  // Of the mass over that of the friction, a p/V.
+  const V softness = absolute(last_rate) * impedance_x * per_a_p;
+  V w = select(softness < 0.5, 1 - softness, V{} + 0.5);
   V t{}, v_x{}, rate{};
   const auto solve = [&] {
     rate = w * v_trial + (1 - w) * last_rate;
-    const V most = w * a_p / impedance_x;  // the slip rate that a traction a p takes
-    const V size = absolute(rate), least = law.V0_m_per_s * 1e-200;
-    const V log_trial = logarithm(select(size > least, size, least) / law.V0_m_per_s);
-    const V y = root_of_traction(size / most, law.V0_m_per_s / most, s, log_trial);
+    const V per_rate = impedance_x * per_a_p / w;  // tractions over a p
+    const V size = absolute(rate), over_V0 = size * law.per_V0_s_per_m;
+    const V log_trial = logarithm(select(over_V0 > 1e-200, over_V0, V{} + 1e-200));
+    const V y = root_of_traction(size * per_rate, law.V0_m_per_s * per_rate, s, log_trial);
     t = select(in_contact, copy_sign(a_p * y, rate), V{});
     v_x = v_trial - t / impedance_x;
   };

@@ -74,10 +74,11 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
   template <class V>
   struct Evaluator {
     V a, b, f0, V0_m_per_s, per_d_c_per_m, f_w, per_V_w_s_per_m;
+    V per_a, per_b, per_V0_s_per_m;
 
     /// The coefficient of steady sliding, V > 0.
     V steady_coefficient(V speed_m_per_s) const {
-      const V f = f0 + (a - b) * logarithm(speed_m_per_s / V0_m_per_s);
+      const V f = f0 + (a - b) * logarithm(speed_m_per_s * per_V0_s_per_m);
       if constexpr (!weakens_strongly) return f;
       // Beyond 1e3 V_w the 1 does not count, and powers stay in range.
       const V v = speed_m_per_s * per_V_w_s_per_m;
@@ -86,13 +87,13 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     }
     /// psi of steady sliding, V > 0.
     V steady_state(V speed_m_per_s) const {
-      const V log_V = logarithm(speed_m_per_s / V0_m_per_s);
+      const V log_V = logarithm(speed_m_per_s * per_V0_s_per_m);
       if constexpr (!weakens_strongly) return f0 - b * log_V;
       return state_of(steady_coefficient(speed_m_per_s), log_V);
     }
     /// psi at which sliding with ln(V/V0) has a coefficient tau/p > 0: a ln[2 V0/V sinh(tau/(a p))].
     V state_of(V coefficient, V log_V) const {
-      const V y = coefficient / a;
+      const V y = coefficient * per_a;
       return coefficient + a * (logarithm(decay(2 * y).lost) - log_V);
     }
     /// psi after a time in which the surfaces slide at |V|: exact.
@@ -106,11 +107,11 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
       }
       // Of V0 theta/d_c; lost / V is dt/d_c at rest.
       const V grown = select(lost > 1e-140, V0_m_per_s * lost / speed, V0_m_per_s * per_d_c_per_m * dt_s);
-      return f0 + b * logarithm(exp_minus((f0 - psi) / b) * left + grown);
+      return f0 + b * logarithm(exp_minus((f0 - psi) * per_b) * left + grown);
     }
   };
   Evaluator<double> evaluator() const {
-    Evaluator<double> e{a, b, f0, V0_m_per_s, 1 / d_c_m, 0, 0};
+    Evaluator<double> e{a, b, f0, V0_m_per_s, 1 / d_c_m, 0, 0, 1 / a, 1 / b, 1 / V0_m_per_s};
     if constexpr (weakens_strongly) {
       e.f_w = this->f_w;
       e.per_V_w_s_per_m = 1 / this->V_w_m_per_s;
