@@ -248,9 +248,6 @@ std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, cons
     for (std::size_t k = 0; k < choices.size(); ++k)
       if ((!choices[k].event || choices[k].event == c.event) && is_in_use(choices, k, sample.values))
         choices[k].set(c, sample.values[k]);
-    // Nothing else of a trigger that is not there, so that equal runs are known as equal.
-    if (!interface::is_at_edge(c.event)) c.trigger = {};
-    if (c.trigger.form == TriggerForm::weakened) c.trigger = {c.trigger.form, c.trigger.zone_m};
   }
   return cases;
 }

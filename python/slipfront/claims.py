@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from slipfront import _core
 from slipfront.given import column, flag, instance, number, refusing, text
-from slipfront.measures import Arrays, given_in_order, history_arrays
+from slipfront.measures import Arrays, given_in_order, history_arrays, tractions_at
 from slipfront.running import CaseLike, make_case
 
 
@@ -30,10 +30,10 @@ def outcome(
     history: time_s [times], x_m [nodes], slip_rate_m_per_s, t_Pa and p_Pa [times, nodes]. tractions: t_s_Pa
     and p_s_Pa [nodes] before the event. Contact is where p_s is above 0, its inside loading.edge_margin_m
     from the ends. Raises CaseError where arrays do not fit each other or the case cannot be used."""
-    t_s, p_s = (column(tractions, "tractions", key) for key in ("t_s_Pa", "p_s_Pa"))
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
     shear_m = number(critical_shear_m, "critical_shear_m")
     given = text(name, "name"), make_case(case, None, tables), *history_arrays(history)
+    t_s, p_s = tractions_at(given[3], tractions)
     with refusing():
         return _core.outcome(*given, t_s, p_s, threshold, shear_m)
 

@@ -22,6 +22,10 @@ from slipfront.files import DataError, exists, is_folder, open_file, read_text
 LIST = "checksums.sha256"
 PUBLISHING = "publishing"
 UNFINISHED = "unfinished"
+RUN_FILES = (
+    "run.json", "case.resolved.toml", "static.csv", "fronts.csv", "energy.csv", "interface.h5",
+    "fields.vtkhdf", "probes.h5",
+)  # fmt: skip
 
 
 def inside(folder: Path, *names: str) -> Path:
@@ -155,6 +159,10 @@ def verify_checksums(folder: Path) -> list[str]:
         try:
             sums = read_list(place) or {}
             problems += filter(None, (problem(place, name, expected) for name, expected in sums.items()))
+            others = (place / name for name in RUN_FILES if name not in sums)
+            problems += [
+                f"{file}: not in {LIST}: not of this set of results" for file in others if exists(file)
+            ]
         except DataError as error:
             problems.append(str(error))
     return problems

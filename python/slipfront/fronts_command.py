@@ -52,7 +52,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     speeds("--c-l-m-per-s", type=float, help="longitudinal wave speed")
     for name in MATERIAL:
         speeds(f"--{name.lower().replace('_', '-')}", dest=name, type=float)
-    speeds("--plane", choices=("stress", "strain"), default="stress")
+    speeds("--plane", choices=("stress", "strain"), help="of the material; by default stress")
     return parser.parse_args(arguments)
 
 
@@ -66,12 +66,14 @@ def wave_speeds_of(options: argparse.Namespace) -> dict[str, float]:
             raise DataError(f"--c-l-m-per-s is {options.c_l_m_per_s}; it must be above 0 and finite")
         return {"c_L": float(options.c_l_m_per_s)}
     if not given:
+        if options.plane is not None:
+            raise DataError("--plane counts with a material alone; give one, or leave it out")
         return {}
     missing = [f"--{name.lower().replace('_', '-')}" for name in MATERIAL if name not in given]
     if missing:
         raise DataError(f"a material needs {', '.join(missing)} as well")
     try:
-        found = wave_speeds(**given, plane=options.plane)
+        found = wave_speeds(**given, plane=options.plane or "stress")
     except ValueError as error:
         raise DataError(str(error)) from None
     return {name: getattr(found, f"{name}_m_per_s") for name in ("c_L", "c_S", "c_R")}

@@ -70,8 +70,15 @@ class FrontSettings:
             setattr(made, name, number(getattr(self, name), name, least=0))
         if made.pulse_share > made.crack_share:
             raise CaseError(f"pulse_share {made.pulse_share} is above crack_share {made.crack_share}")
-        for name in ("mu_s", "youngs_modulus_Pa", "poissons_ratio"):
-            setattr(made, name, number(getattr(self, name), name))
+        for name, least, most in (
+            ("mu_s", 0, np.inf),
+            ("youngs_modulus_Pa", 0, np.inf),
+            ("poissons_ratio", -1, 0.5),
+        ):
+            value = number(getattr(self, name), name)
+            if not (np.isnan(value) or least < value < most):
+                raise CaseError(f"{name} is {value}; it must be above {least} and below {most}, or NaN")
+            setattr(made, name, value)
         return made
 
 
@@ -291,6 +298,16 @@ def history_arrays(history: Arrays) -> HistoryArrays:
     return time_s, x_m, rate, t, p
 
 
+def tractions_at(x_m: np.ndarray, tractions: Arrays) -> tuple[np.ndarray, np.ndarray]:
+    """t_s_Pa and p_s_Pa; refused where they have places of their own that are not those of the history."""
+    t_s, p_s = (column(tractions, "tractions", name) for name in ("t_s_Pa", "p_s_Pa"))
+    if isinstance(tractions, Mapping) and "x_m" in tractions:
+        own_m = column(tractions, "tractions", "x_m")
+        if len(own_m) != len(x_m) or not np.allclose(own_m, x_m):
+            raise CaseError("tractions['x_m'] differs from history['x_m']; give both at the same nodes")
+    return t_s, p_s
+
+
 def find_fronts_in_history(
     history: Arrays,
     tractions: Arrays | None = None,
@@ -310,7 +327,7 @@ def find_fronts_in_history(
     arrays = history_arrays(history)
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
     if tractions is not None:
-        t_s, p_s = (column(tractions, "tractions", name) for name in ("t_s_Pa", "p_s_Pa"))
+        t_s, p_s = tractions_at(arrays[1], tractions)
     elif len(arrays[3]) and len(arrays[4]):
         t_s, p_s = arrays[3][0], arrays[4][0]
     else:

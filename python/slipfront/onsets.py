@@ -67,7 +67,7 @@ def columns_of(where: Any, names: list[str]) -> dict[str, tuple[str, float]]:
 
 def is_sentinel(value: float) -> bool:
     """Whether a number is one that programs write for nothing: -1, -9, -99, 999, powers of ten from 1e6."""
-    size = f"{abs(value):.17g}"
+    size = f"{abs(value):.15g}"  # 1e300 is no double
     usual = r"1|9+" if value < 0 else r"999+"
     return re.fullmatch(rf"{usual}|1(0{{6,}}|e\+\d+)", size) is not None
 

@@ -55,10 +55,19 @@ def flattened(given: Mapping[str, Any], before: str = "") -> Iterator[tuple[str,
     """Pairs of dotted key and TOML text."""
     for name, value in given.items():
         key = before + text(name, "a key")
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and value:
             yield from flattened(value, f"{key}.")
         else:
-            yield key, toml_text(value, key)
+            yield key, "{}" if isinstance(value, Mapping) else toml_text(value, key)
+
+
+def told_once(pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Refuses two values of one key."""
+    keys: dict[str, str] = {}
+    for key, value in pairs:
+        if keys.setdefault(key, value) != value:
+            raise CaseError(f"{key} is given as {shown(keys[key])} and as {shown(value)}; keep one")
+    return list(keys.items())
 
 
 def working_folder() -> Path:
@@ -79,8 +88,9 @@ def temporary_folder() -> Path:
 def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping[str, Any]) -> _core.Case:
     """The case with its changes, checked."""
     try:
-        pairs = [*flattened({} if changes is None else table(changes, "changes")), *flattened(tables)]
-        keys = [*flattened(case), *pairs] if isinstance(case, Mapping) else []
+        given = {} if changes is None else table(changes, "changes")
+        pairs = told_once([*flattened(given), *flattened(tables)])
+        keys = [*told_once(flattened(case)), *pairs] if isinstance(case, Mapping) else []
     except RecursionError:
         raise CaseError("case: nested too deeply") from None
     if isinstance(case, Mapping):
@@ -261,8 +271,8 @@ def run_with_law(
         values = array(mu(speed_m_per_s, slip_m), "mu")
         if len(values) not in (1, len(slip_m)):
             raise CaseError(f"mu has {len(values)} values, not {len(slip_m)}")
-        if not (values >= 0).all():
-            raise CaseError("mu must be at least 0 and a number")
+        if not (np.isfinite(values) & (values >= 0)).all():
+            raise CaseError("mu must be at least 0 and a finite number")
         return np.ascontiguousarray(np.broadcast_to(values, slip_m.shape))
 
     at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])

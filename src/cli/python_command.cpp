@@ -2,11 +2,13 @@
 #include "cli/python_command.hpp"
 
 #include <fmt/core.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -76,6 +78,21 @@ std::string interpreter(const fs::path& tree) {
   return !tree.empty() && ::access(own.c_str(), X_OK) == 0 ? own.string() : "python3";
 }
 
+/// Refuses a program that is named as the interpreter and is none: it would do nothing, and might call that
+/// done. One that cannot be started is told later.
+void require_runs_python(const std::string& named) {
+  std::array<char, 3> printed{};
+  std::FILE* pipe = ::popen(R"("$SLIPFRONT_PYTHON" -c 'print(42)' 2>/dev/null)", "r");
+  if (pipe == nullptr) return;
+  const std::size_t n_read = std::fread(printed.data(), 1, printed.size(), pipe);
+  const int status = ::pclose(pipe);
+  constexpr int first_not_started = 126;
+  if (WIFEXITED(status) && WEXITSTATUS(status) >= first_not_started) return;
+  if (std::string_view(printed.data(), n_read) != "42\n")
+    throw UserError("slipfront: SLIPFRONT_PYTHON is {}, which does not run Python; set it to an interpreter",
+                    named);
+}
+
 void put_first_on_python_path(const fs::path& folder) {
   const char* others = std::getenv("PYTHONPATH");
   const bool alone = others == nullptr || *others == '\0';
@@ -111,6 +128,8 @@ void become_python_command(int argc, char** argv) {
   const fs::path self = fs::read_symlink("/proc/self/exe", unknown);
   if (!unknown) ::setenv("SLIPFRONT_PROGRAM", self.c_str(), 0);  // what a sweep runs
   std::string python = interpreter(tree);
+  if (const char* named = std::getenv("SLIPFRONT_PYTHON"); named != nullptr && python == named)
+    require_runs_python(python);
   std::vector<std::string> start = {python, "-c", start_of_package};
   std::vector<char*> arguments;
   for (std::string& argument : start) arguments.push_back(argument.data());

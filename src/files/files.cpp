@@ -26,7 +26,9 @@ constexpr std::size_t max_bytes_at_once = std::size_t{1} << 30U;
 [[noreturn]] void throw_write(const std::filesystem::path& file, const char* what) {
   const int error = errno;
   throw WriteError("{}: cannot be {} ({}); {}", file.string(), what, std::strerror(error),
-                   is_full(error) ? "free space there" : "check that its folder can be written");
+                   error == EFBIG   ? "allow larger files, as by ulimit -f"
+                   : is_full(error) ? "free space there"
+                                    : "check that its folder can be written");
 }
 
 /// The folder of a path; invalid, with errno, where it is not there or a link leads to it.

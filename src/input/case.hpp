@@ -133,6 +133,14 @@ inline bool is_prestressed(const Case& config) {
   return config.loading.method == statics::LoadingMethod::prestress;
 }
 
+/// Whether the event starts by a force, with the trigger's ramp and duration.
+inline bool starts_by_force(const Case& config) {
+  return interface::is_at_edge(config.event)
+             ? config.trigger.form != interface::TriggerForm::weakened
+             : config.event == interface::EventKind::nucleation &&
+                   config.nucleation.form == interface::NucleationForm::overstress;
+}
+
 inline bool has_base_body(const Case& config) {
   return config.base.kind == BaseKind::body;
 }

@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 #include <string_view>
 
@@ -196,6 +197,11 @@ Value parse_value(const std::string& text) {
     if (table.size() == 1) return to_value(table.begin()->second);
   } catch (const toml::parse_error&) {
   }
+  const auto is_beyond = [&](auto number) {
+    return std::from_chars(text.data(), text.data() + text.size(), number).ec ==
+           std::errc::result_out_of_range;
+  };
+  if (is_beyond(0.0) || is_beyond(std::int64_t{})) return Unsupported{"a number out of range"};
   return text;
 }
 

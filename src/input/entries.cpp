@@ -278,9 +278,31 @@ Condition nucleated() {
   return {Message("{} = nucleation", Key("event.kind")),
           [](const Case& c) { return c.event == EventKind::nucleation; }};
 }
+Condition overstressed() {
+  return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
+          [](const Case& c) {
+            return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
+          }};
+}
+Condition rounded_by(Corner corner, const char* word) {
+  return {Message("{} = {}", Key("plate.corner"), word),
+          [corner](const Case& c) { return c.plate.corner == corner; }};
+}
+Condition relaxed() {
+  return {Message("{} other than none", Key("friction.regularisation")),
+          [](const Case& c) { return c.regularisation.relaxed != Relaxed::none; }};
+}
+Condition at_edge() {
+  return {Message("{} = left or right", Key("event.kind")),
+          [](const Case& c) { return is_at_edge(c.event); }};
+}
 Condition pushed() {
-  return {Message("{} = added or raised", Key("event.trigger_form")),
-          [](const Case& c) { return c.trigger.form != TriggerForm::weakened; }};
+  return {
+      Message("{} = left or right and {} = added or raised", Key("event.kind"), Key("event.trigger_form")),
+      [](const Case& c) { return is_at_edge(c.event) && starts_by_force(c); }};
+}
+Condition started_by_force() {
+  return {Message("{}, or {}", pushed().setting, overstressed().setting), starts_by_force};
 }
 Condition with_table() {
   return {Message("{}", Key("friction.file")),
@@ -293,12 +315,6 @@ Condition with_random_field() {
 Condition never_stuck() {
   return {Message("{} with a state", Key("friction.law")),
           [](const Case& c) { return !c.friction.states().empty(); }};
-}
-Condition overstressed() {
-  return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
-          [](const Case& c) {
-            return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
-          }};
 }
 
 void add_title(Entries& all) {
@@ -321,12 +337,15 @@ void add_plate(Entries& all) {
   plate.word("corner", &Plate::corner,
              {{"none", Corner::none}, {"relief", Corner::relief}, {"fillet", Corner::fillet}},
              "lower corners: right angles, a shallow arc tangent to the base, or a quarter circle");
+  plate.only_with = rounded_by(Corner::relief, "relief");
   plate.add("relief_length_m", &Plate::relief_length_m, above(0),
             "length of the relief's arc along the interface");
   plate.add("relief_height_m", &Plate::relief_height_m, above(0), "rise of the relief's arc at the edge");
   plate.add("relief_depth_m", &Plate::relief_depth_m, above(0),
             "height over which the relief's shift of the nodes fades out");
+  plate.only_with = rounded_by(Corner::fillet, "fillet");
   plate.add("fillet_radius_m", &Plate::fillet_radius_m, above(0), "radius of the fillet's quarter circle");
+  plate.only_with = {};
   plate.word("sides", &Plate::sides,
              {{"free", Sides::free}, {"periodic", Sides::periodic}, {"absorbing", Sides::absorbing}},
              "vertical edges: free of traction, the right one identical to the left one, or with dashpots "
@@ -464,6 +483,7 @@ void add_friction(Entries& all) {
   friction.word("regularisation", &Regularisation::relaxed,
                 {{"none", Relaxed::none}, {"strength", Relaxed::strength}, {"pressure", Relaxed::pressure}},
                 "what follows changes of pressure with a delay, at the rate (|v| + v*)/L + 1/t*");
+  friction.only_with = relaxed();
   friction.add("relaxation_length_m", &Regularisation::length_m, above_or_infinite(0), "L of that rate");
   friction.add("relaxation_slip_rate_m_per_s", &Regularisation::slip_rate_m_per_s, at_least(0),
                "v* of that rate");
@@ -517,6 +537,7 @@ void add_event(Entries& all) {
              "start of the event: nothing, shear just past the critical one, a trigger at an edge, or a "
              "nucleation patch");
   Table trigger(all, "event", &Case::trigger, Stage::event);
+  trigger.only_with = at_edge();
   trigger.word(
       "trigger_form", &Trigger::form,
       {{"added", TriggerForm::added}, {"raised", TriggerForm::raised}, {"weakened", TriggerForm::weakened}},
@@ -528,7 +549,7 @@ void add_event(Entries& all) {
   trigger.add(
       "trigger_amount", &Trigger::amount, at_least(0),
       "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s");
-  trigger.only_with = {};
+  trigger.only_with = started_by_force();
   trigger.add("trigger_ramp_s", &Trigger::ramp_s, at_least(0), "time over which the trigger rises linearly");
   trigger.add("trigger_duration_s", &Trigger::duration_s, above_or_infinite(0),
               "the trigger is taken away this long after its start");

@@ -136,8 +136,7 @@ void check_tilt(const Case& config) {
 }
 
 void check_trigger_zone(const Case& config) {
-  const bool counts = !is_prestressed(config) || interface::is_at_edge(config.event);
-  if (counts && config.trigger.zone_m > config.plate.width_m)
+  if (interface::is_at_edge(config.event) && config.trigger.zone_m > config.plate.width_m)
     throw UserError("{} is {:.12g} m; it must be at most {}, {:.12g} m", Key("event.trigger_zone_m"),
                     config.trigger.zone_m, Key("plate.width_m"), config.plate.width_m);
 }

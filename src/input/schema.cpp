@@ -144,7 +144,11 @@ Setting to_setting(const Override& override) {
 void apply(const std::vector<Override>& overrides, Document& document) {
   for (const Override& override : overrides) {
     std::erase_if(document.settings, [&](const Setting& setting) { return setting.key == override.first; });
-    document.settings.push_back(to_setting(override));
+    Setting setting = to_setting(override);
+    if (override.second == "{}")
+      document.tables.push_back({setting.key, setting.place, 0});
+    else
+      document.settings.push_back(std::move(setting));
   }
 }
 
@@ -555,7 +559,6 @@ CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override
 
 CaseFile::CaseFile(const CaseText& text, const std::vector<Override>& overrides)
     : name_(files::one_line(text.name)), document_(parse_document(text.text, name_)) {
-  if (overrides.empty()) require_a_key();
   read(text.folder, overrides);
 }
 
@@ -567,6 +570,7 @@ void CaseFile::require_a_key() const {
 void CaseFile::read(const std::filesystem::path& folder, const std::vector<Override>& overrides) {
   apply(overrides, document_);
   config_ = case_of(document_, name_, notes_);
+  require_a_key();
   placing_errors([&] { read_tables(folder, config_); });
 }
 

@@ -30,10 +30,9 @@ class FunctionObserver final : public motion::IntervalObserver {
     watcher_.in_python([&] {
       const nb::object answer = function_(InterfaceState{now.step, std::move(row)});
       if (answer.is_none()) return;
-      if (!nb::isinstance<nb::str>(answer) || nb::len(answer) == 0)
+      if (!nb::try_cast(answer, reason) || reason.empty())
         throw UserError("an observer returned {}; it returns None, or why the event is to end, a text",
                         nb::repr(answer).c_str());
-      reason = nb::cast<std::string>(answer);
     });
     return reason;
   }

@@ -210,8 +210,7 @@ void add_times(const input::Case& config, double step_s, Notes& notes) {
                     "the plate; is it in s?",
                     config.time.end_s, config.time.end_s / step_s,
                     config.time.end_s * solid::shear_speed_m_per_s(config.material) / width_m));
-  const bool ramps = interface::is_at_edge(config.event) || config.event == interface::EventKind::nucleation;
-  if (ramps && config.trigger.ramp_s > config.time.end_s)
+  if (starts_by_force(config) && config.trigger.ramp_s > config.time.end_s)
     notes.push_back(fmt::format("event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",
                                 config.trigger.ramp_s, config.time.end_s));
 }

@@ -160,15 +160,11 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, Ini
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
                              motion::EventOutput* output, motion::Observers more) {
-  const bool triggered =
-      (is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened) ||
-      (config.event == interface::EventKind::nucleation &&
-       config.nucleation.form == interface::NucleationForm::overstress);
   const motion::EventSetup setup = {
       .state = event_state(config, initial),
       .mu_s = static_coefficients(config, initial.mu_s),
       .waves = {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
-      .trigger = triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
+      .trigger = starts_by_force(config) ? config.trigger : interface::Trigger{.ramp_s = 0},
       .time = config.time,
       .sampling = {config.output.history_interval_s, config.output.energy_interval_s,
                    snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s},

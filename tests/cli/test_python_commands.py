@@ -21,7 +21,8 @@ def interpreter(tmp_path, monkeypatch):
     def make(text, is_named=True):
         script = tmp_path / "bin/python3"
         script.parent.mkdir()
-        script.write_text(text)
+        # A named one is asked first whether it runs Python.
+        script.write_text(text.replace("\n", f'\n[ $# = 2 ] && exec "{sys.executable}" "$@"\n', 1))
         script.chmod(0o755)
         if is_named:
             monkeypatch.setenv("SLIPFRONT_PYTHON", str(script))
@@ -76,6 +77,11 @@ def test_an_interpreter_that_is_not_there_is_told(program, monkeypatch):
     monkeypatch.setenv("SLIPFRONT_PYTHON", "/nonexistent/python")
     line = refusal(program("report", "DIR"))
     assert "/nonexistent/python cannot be started: No such file" in line and "SLIPFRONT_PYTHON" in line
+
+
+def test_a_program_that_is_no_interpreter_is_told(program, monkeypatch):
+    monkeypatch.setenv("SLIPFRONT_PYTHON", "/bin/true")
+    assert "SLIPFRONT_PYTHON is /bin/true, which does not run" in refusal(program("report", "DIR"))
 
 
 def test_a_missing_package_is_told(elsewhere, interpreter, tmp_path, monkeypatch):

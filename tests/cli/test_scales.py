@@ -56,7 +56,7 @@ def test_slow_nucleation_in_a_stiff_block_is_followed(program, write_case, tmp_p
     assert f"ended: {result['end_reason']}\n" in run.stdout
     assert max(abs(f["end_x_m"] - f["start_x_m"]) for f in result["fronts"]) > 0.1
     resolved = (tmp_path / "out/case.resolved.toml").read_text()
-    assert "\ntrigger_zone_m = 0.015" in resolved
+    assert "\ntrigger_margin_m = 0.015" in resolved
     assert "mu_s" in run.stdout and "S before the event, inside: " in run.stdout
 
 

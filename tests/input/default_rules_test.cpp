@@ -43,7 +43,7 @@ TEST(DefaultRules, ABaseIsLikeThePlate) {
 }
 
 TEST(DefaultRules, ScaleWithThePlate) {
-  const Case c = parsed("[plate]\nwidth_m = 0.4\nheight_m = 0.3\n");
+  const Case c = parsed("event.kind = 'left'\n[plate]\nwidth_m = 0.4\nheight_m = 0.3\n");
   const Case paper;
   EXPECT_EQ(c.plate.element_size_m, 2 * paper.plate.element_size_m);
   EXPECT_EQ(c.trigger.zone_m, 2 * paper.trigger.zone_m);

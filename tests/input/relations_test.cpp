@@ -74,12 +74,12 @@ const Contradiction wrong_cases[] = {
     {"TiltWithAForce", "[loading]\nmean_pressure_Pa = 1e6\ntilt_difference_m = -0.1 # here\n"},
     {"EdgeMargin", "[plate]\nwidth_m = 0.2\n[loading]\nedge_margin_m = 0.1 # here\n"},
     {"EdgeMarginOfANarrowPlate", "[loading]\nedge_margin_m = 0.05\n", {{"plate.width_m", "0.1"}}},
-    {"TriggerZone", "[event]\ntrigger_zone_m = 0.3 # here\n"},
+    {"TriggerZone", "[event]\nkind = \"left\"\ntrigger_zone_m = 0.3 # here\n"},
     {"GradedIteratively", "[plate]\ncoarsenings = 1\n[loading]\nsolver = \"iterative\" # here\n"},
     {"IterativelyGraded", "[loading]\nsolver = \"iterative\"\n", {{"plate.coarsenings", "1"}}},
     {"SlenderIteratively",
-     "[plate]\nheight_m = 2\nwidth_m = 0.02\n[loading]\nsolver = \"iterative\" # here\nedge_margin_m = 1e-3\n"
-     "[event]\ntrigger_zone_m = 1e-3\n"},
+     "[plate]\nheight_m = 2\nwidth_m = 0.02\n[loading]\nsolver = \"iterative\" # here\nedge_margin_m = "
+     "1e-3\n"},
     // Base
     {"PeriodicBase", on_steel + "sides = \"periodic\" # here\n"},
     {"FilletOnABase", on_steel + "[plate]\ncorner = \"fillet\" # here\n"},
@@ -88,7 +88,7 @@ const Contradiction wrong_cases[] = {
      on_steel + "coarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\" # here\n"},
     {"HighBaseIteratively",
      on_steel + "[plate]\nwidth_m = 0.009\nelement_size_m = 1e-3\n[loading]\nsolver = \"iterative\" # "
-                "here\nedge_margin_m = 1e-3\n[event]\ntrigger_zone_m = 1e-3\n"},
+                "here\nedge_margin_m = 1e-3\n"},
     // Start of the event
     {"TriggerOfCoulomb",
      "[friction]\nlaw = \"coulomb\"\n[event]\nkind = \"left\"\ntrigger_form = \"weakened\" # here\n"},

@@ -62,6 +62,7 @@ TEST(OpenChoices, SetTheKeysThatTheyName) {
     EXPECT_TRUE(names.insert(choice.name).second);
     for (const double level : choice.levels) {
       input::Case changed, standard;
+      changed.event = standard.event = choice.event.value_or(standard.event);
       if (choice.name.ends_with("_raised"))
         changed.trigger.form = standard.trigger.form = interface::TriggerForm::raised;
       choice.set(standard, choice.standard);

@@ -88,6 +88,7 @@ def test_a_list_without_a_file_that_every_set_has_is_refused(run, name):
     write_checksums(run, leave_out=(name,))
     with pytest.raises(DataError, match=f"{name}: not in checksums.sha256"):
         read_run(run)
+    assert verify_checksums(run) == [f"{run / name}: not in checksums.sha256: not of this set of results"]
 
 
 def test_a_damaged_list_is_refused(run):

@@ -65,6 +65,7 @@ def test_a_file_of_matlab(tmp_path):
         ([0, 1, 2, -1, 4], "none", 0),
         ([-2, -1, 0, 1, 2], None, 0),  # a clock that began later
         ([0, 1, 2, 1e9, 1e9], None, 2),
+        ([0, 1, 2, 1e300, 1e300], None, 2),
         ([0, 1, 999, -1, 9999], None, 2),  # 999 is no farther from 1 than 9999 from it
         ([1e9, 1e9 + 1, 1e9 + 2, 1e9 + 3, 1e9 + 4], None, 0),
         ([0, 1, 77, 3, 4], 77, 1),

@@ -99,6 +99,7 @@ def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, t
             "a material needs --youngs-modulus-pa, --density-kg-per-m3 as well",
         ),
         (ONSETS, ["--c-l-m-per-s", "-1"], "--c-l-m-per-s is -1.0; it must be above 0 and finite"),
+        (ONSETS, ["--plane", "strain"], "--plane counts with a material alone"),
         (ONSETS, ["--l-star-m", "0"], "l_star_m is 0.0; it must be above 0"),
     ],
 )

@@ -62,6 +62,10 @@ def test_what_is_no_path_is_refused(name):
         ({"plate": {"width_m": 10**5000}}, "no value"),
         ({"plate": {"width_m": np.nan}}, "plate.width_m is nan m"),
         ({"title": LONE}, "title is "),
+        ({"title": {}}, "title must be a string, is a table"),
+        ({"plate": {"width_m": {}}}, "plate.width_m must be a number, is a table"),
+        ({"frction": {}}, "unknown table [frction]; did you mean [friction]?"),
+        ({"friction": {"mu_k": 0.7}, "friction.mu_k": 0.8}, "friction.mu_k is given as '0.7' and as '0.8'"),
         ({LONE: 1}, "a key is "),
         ({5: 1}, "a key is 5; it must be a text"),
         ({"plate": {None: 1}}, "a key is None; it must be a text"),
@@ -117,6 +121,14 @@ def test_options_of_a_run(arguments, said):
         ({"never_slipped": "maybe"}, "never_slipped is 'maybe'; it must be a number"),
         ({"settings": slipfront.FrontSettings(l_star_m=np.nan)}, "l_star_m is nan"),
         ({"settings": slipfront.FrontSettings(mu_s="a")}, "mu_s is 'a'"),
+        (
+            {"settings": slipfront.FrontSettings(youngs_modulus_Pa=-1)},
+            "youngs_modulus_Pa is -1.0; it must be",
+        ),
+        (
+            {"settings": slipfront.FrontSettings(poissons_ratio=5)},
+            "it must be above -1 and below 0.5, or NaN",
+        ),
         ({"settings": slipfront.FrontSettings(l_star_m=0)}, "l_star_m is 0; it must be above 0"),
         ({"settings": slipfront.FrontSettings(speed_interval="left")}, "speed_interval is 'left'"),
         ({"settings": slipfront.FrontSettings(crack_share=0.1)}, "pulse_share 0.2 is above crack_share 0.1"),
@@ -152,6 +164,13 @@ def test_tractions_and_changes_are_dictionaries(given):
     assert "tractions" in refusal(lambda: slipfront.outcome(CASE, HISTORY, given))
     if not isinstance(given, dict):
         assert "it must be a dictionary" in refusal(lambda: slipfront.run(CASE, given))
+
+
+@pytest.mark.parametrize("places", [HISTORY["x_m"][::-1], HISTORY["x_m"] + 1])
+def test_tractions_have_the_places_of_the_history(places):
+    given = TRACTIONS | {"x_m": places}
+    assert "tractions['x_m'] differs" in refusal(lambda: slipfront.find_fronts_in_history(HISTORY, given))
+    assert "tractions['x_m'] differs" in refusal(lambda: slipfront.outcome(CASE, HISTORY, given))
 
 
 def test_criteria_need_their_columns():

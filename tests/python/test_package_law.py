@@ -81,7 +81,8 @@ def test_mistakes_of_a_law():
         slipfront.run_with_law(CASE, breaks, COULOMB)
     for law, told in (
         (lambda rate, slip: 1.0, r"mu\(0, 0\) is 1.0, the case's coefficient at rest 1.3"),
-        (lambda rate, slip: np.where(slip > 0, np.nan, 1.3), "mu must be at least 0 and a number"),
+        (lambda rate, slip: np.where(slip > 0, np.nan, 1.3), "mu must be at least 0 and a finite number"),
+        (lambda rate, slip: np.where(slip > 0, np.inf, 1.3), "mu must be at least 0 and a finite number"),
         (lambda rate, slip: 1.3 + 0j * slip, "complex numbers"),
         (lambda rate, slip: np.ones(3), "mu has 3 values, not 1"),
         (1.3, "mu is 1.3; it must be a function"),

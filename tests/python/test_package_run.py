@@ -208,6 +208,7 @@ def test_observers_that_are_none(tmp_path):
         ([(1e-6, 2)], "observers has (1e-06, 2); give pairs"),
         ([(-1, print)], "the interval of an observer is -1"),
         ([(0, lambda state: 3)], "an observer returned 3; it returns None, or why"),
+        ([(0, lambda state: "a\ud800")], "an observer returned 'a\\ud800'; it returns None, or why"),
         ([(0, lambda state: "")], "an observer returned ''; it returns None, or why"),
     ):
         assert text in refused(lambda observers=observers: slipfront.run(case, observers=observers))
@@ -338,7 +339,6 @@ corner = "relief"
 relief_length_m = 6e-3
 relief_height_m = 1e-4
 relief_depth_m = 0.01
-fillet_radius_m = 6e-3
 sides = "free"
 top = "loaded"
 [material]
@@ -400,7 +400,7 @@ loading = {mean_pressure_Pa = 5e6, tilt_difference_m = 2e-4, shear_over_critical
 """,
     "force": """
 event.kind = "left"
-plate = {element_size_m = 5e-3}
+plate = {element_size_m = 5e-3, corner = "fillet", fillet_radius_m = 0.02}
 time.end_s = 1e-5
 loading = {normal_force_N_per_m = 1e6, shear_force_N_per_m = 5e5}
 """,

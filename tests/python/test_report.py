@@ -219,6 +219,14 @@ def test_a_damaged_folder_is_refused(run, capsys, name):
     assert not (run / "report.html").exists()
 
 
+def test_a_folder_without_checksums_is_told(run, capsys):
+    for is_listed in (False, True):
+        if is_listed:
+            write_checksums(run)
+        page_of(run)
+        assert ("has no checksums.sha256" in capsys.readouterr().out) != is_listed
+
+
 def test_wrong_shapes_are_refused(run, capsys):
     with h5py.File(run / "interface.h5", "r+") as file:
         slip = file["slip_m"][:, 1:]

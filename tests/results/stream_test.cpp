@@ -185,8 +185,8 @@ TEST_F(Stream, AFullDiskIsToldByTheFilesName) {
       for (int k = 0;; ++k) stream.sample(row(k));
     });
   }
-  EXPECT_EQ(error,
-            (folder_ / history_file).string() + ": cannot be written (File too large); free space there");
+  EXPECT_EQ(error, (folder_ / history_file).string() +
+                       ": cannot be written (File too large); allow larger files, as by ulimit -f");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 

@@ -11,7 +11,8 @@ import matplotlib
 from slipfront import command
 from slipfront.figures.drawing import guarded
 from slipfront.figures.style import RC
-from slipfront.files import DataError, is_folder
+from slipfront.files import DataError, exists, is_folder
+from slipfront.folder import LIST, read_list
 from slipfront.report import reproduction, run, study
 from slipfront.report.page import require_replaceable, write_page
 from slipfront.sweep import report as sweep
@@ -31,7 +32,10 @@ def write_report(folder: Path, file: Path) -> list[str]:
         raise DataError(f"{folder}: holds no results of a run, a study, a sweep or a reproduction")
     with matplotlib.rc_context(RC):
         page = guarded(folder, lambda: kind.page(folder, file))
-    return write_page(page, file)
+    told = write_page(page, file)
+    if exists(folder / "run.json") and read_list(folder) is None:
+        told.append(f"{folder}: has no {LIST}: nothing tells whether its files are those that were written")
+    return told
 
 
 def main(arguments: list[str]) -> int:
