@@ -110,7 +110,8 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
   n.slip_rate_m_per_s = v_x;
   n.t_Pa = t;
   n.strength_Pa = select(sticks, strength_at_rest, select(n.slipping, strength, first_strength));
-  n.onset_ratio = select(n.strength_Pa > 0, trial_traction / n.strength_Pa, V{});
+  const Mask<V> has_strength = n.strength_Pa > 0;
+  n.onset_ratio = select(has_strength, trial_traction / select(has_strength, n.strength_Pa, V{} + 1), V{});
   n.slipping = slipping;
   n.slip_m = slip;
   n.memory = now;

@@ -38,7 +38,7 @@ void set(interface::Interface& s, std::size_t node, double trial, double t, doub
   s.t_Pa[node] = t;
   s.p_Pa[node] = p;
   s.strength_Pa[node] = static_mu * p;
-  s.onset_ratio[node] = trial / (static_mu * p);
+  s.onset_ratio[node] = p > 0 ? trial / (static_mu * p) : 0;
   s.slipping[node] = slips;
 }
 
