@@ -35,16 +35,19 @@ void expect_same_values(const Interface& a, const Interface& b) {
   ASSERT_EQ(a.slipping, b.slipping);
   ASSERT_EQ(a.locked, b.locked);
   std::vector<double> largest(results_at(a, 0).size());
-  for (std::size_t i = 0; i < a.size(); ++i)
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const auto values = results_at(a, i);
     for (std::size_t k = 0; k < largest.size(); ++k)
-      if (const double value = results_at(a, i)[k]; !std::isnan(value))
-        largest[k] = std::max(largest[k], std::abs(value));
-  for (std::size_t i = 0; i < a.size(); ++i)
+      if (!std::isnan(values[k])) largest[k] = std::max(largest[k], std::abs(values[k]));
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const auto of_a = results_at(a, i), of_b = results_at(b, i);
     for (std::size_t k = 0; k < largest.size(); ++k) {
-      const double value = results_at(a, i)[k], other = results_at(b, i)[k];
+      const double value = of_a[k], other = of_b[k];
       ASSERT_TRUE(std::isnan(value) ? std::isnan(other) : std::abs(value - other) <= rounding * largest[k])
           << "node " << i << ": " << value << ", " << other;
     }
+  }
 }
 
 /// The update as it would be written for one node at a time.
