@@ -48,7 +48,8 @@ std::span<const Verification> verifications() {
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch::verify},
       Verification{"impact", "Impact of a free body on the plane", impact::verify},
       Verification{"block", "Stick-slip of a block", block::verify},
-      Verification{"spring_slider", "A slider on a spring under rate-and-state friction", spring_slider::verify},
+      Verification{"spring_slider", "A slider on a spring under rate-and-state friction",
+                   spring_slider::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;
