@@ -38,7 +38,7 @@ using Keys = std::vector<input::Override>;
 /// Keys of a table, given by keyword, behind others.
 Keys with_table(Keys keys, const char* table, const nb::kwargs& given) {
   nb::dict tables;
-  if (given.size() > 0) tables[table] = given;
+  if (!given.empty()) tables[table] = given;
   for (const nb::handle pair : nb::module_::import_("slipfront.running").attr("flattened")(tables))
     keys.push_back(nb::cast<input::Override>(pair));
   return keys;

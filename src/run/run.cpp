@@ -22,8 +22,6 @@ namespace slipfront::run {
 
 namespace {
 
-using interface::is_at_edge;
-
 /// With which the event begins. @tparam Initial  InitialState
 template <class Initial>
 auto& event_state(const input::Case& config, Initial& initial) {
