@@ -61,7 +61,7 @@ def flattened(given: Mapping[str, Any], before: str = "") -> Iterator[tuple[str,
             yield key, "{}" if isinstance(value, Mapping) else toml_text(value, key)
 
 
-def told_once(pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+def without_conflicts(pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Refuses two values of one key."""
     keys: dict[str, str] = {}
     for key, value in pairs:
@@ -89,8 +89,8 @@ def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping
     """The case with its changes, checked."""
     try:
         given = {} if changes is None else table(changes, "changes")
-        pairs = told_once([*flattened(given), *flattened(tables)])
-        keys = [*told_once(flattened(case)), *pairs] if isinstance(case, Mapping) else []
+        pairs = without_conflicts([*flattened(given), *flattened(tables)])
+        keys = [*without_conflicts(flattened(case)), *pairs] if isinstance(case, Mapping) else []
     except RecursionError:
         raise CaseError("case: nested too deeply") from None
     if isinstance(case, Mapping):

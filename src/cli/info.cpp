@@ -121,8 +121,8 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
            fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
                        o.unstable_wavelength_m ? "Rubin, Ampuero 2005" : "Uenishi, Rice 2003"));
   if (o.unstable_wavelength_m)
-    list.add("waves grow from",
-             fmt::format("{:.3g} m on, under the slip rate before the event (Rice, Ruina 1983)",
+    list.add("unstable wavelengths",
+             fmt::format("from {:.3g} m on, under the slip rate before the event (Rice, Ruina 1983)",
                          *o.unstable_wavelength_m));
   if (o.griffith_half_length_m)
     list.add("critical crack length",

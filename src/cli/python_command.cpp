@@ -79,7 +79,7 @@ std::string interpreter(const fs::path& tree) {
 }
 
 /// Refuses a program that is named as the interpreter and is none: it would do nothing, and might call that
-/// done. One that cannot be started is told later.
+/// done. The error of one that cannot be started comes when it is started.
 void require_runs_python(const std::string& named) {
   std::array<char, 3> printed{};
   std::FILE* pipe = ::popen(R"("$SLIPFRONT_PYTHON" -c 'print(42)' 2>/dev/null)", "r");

@@ -133,12 +133,18 @@ inline bool is_prestressed(const Case& config) {
   return config.loading.method == statics::LoadingMethod::prestress;
 }
 
-/// Whether the event starts by a force, with the trigger's ramp and duration.
+/// Whether the event starts by a traction added next to an edge of contact.
+inline bool is_pushed_at_edge(const Case& config) {
+  return interface::is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
+}
+/// Whether it starts by one added over a patch.
+inline bool is_overstressed(const Case& config) {
+  return config.event == interface::EventKind::nucleation &&
+         config.nucleation.form == interface::NucleationForm::overstress;
+}
+/// Whether it starts by either, with the trigger's ramp and duration.
 inline bool starts_by_force(const Case& config) {
-  return interface::is_at_edge(config.event)
-             ? config.trigger.form != interface::TriggerForm::weakened
-             : config.event == interface::EventKind::nucleation &&
-                   config.nucleation.form == interface::NucleationForm::overstress;
+  return is_pushed_at_edge(config) || is_overstressed(config);
 }
 
 inline bool has_base_body(const Case& config) {

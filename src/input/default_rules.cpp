@@ -65,7 +65,7 @@ DefaultRule quiet_time_rule(const Scale& crossing) {
   auto rule = multiple_of(crossing, "time.quiet_s");
   rule.text += "; `inf` under a friction law with a state";
   rule.value = [share = rule.value](const Case& c) -> Value {
-    return c.friction.states().empty() ? share(c) : Value(infinity);
+    return c.friction.has_state() ? Value(infinity) : share(c);
   };
   return rule;
 }

@@ -280,9 +280,7 @@ Condition nucleated() {
 }
 Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
-          [](const Case& c) {
-            return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
-          }};
+          is_overstressed};
 }
 Condition rounded_by(Corner corner, const char* word) {
   return {Message("{} = {}", Key("plate.corner"), word),
@@ -299,7 +297,7 @@ Condition at_edge() {
 Condition pushed() {
   return {
       Message("{} = left or right and {} = added or raised", Key("event.kind"), Key("event.trigger_form")),
-      [](const Case& c) { return is_at_edge(c.event) && starts_by_force(c); }};
+      is_pushed_at_edge};
 }
 Condition started_by_force() {
   return {Message("{}, or {}", pushed().setting, overstressed().setting), starts_by_force};
@@ -312,9 +310,9 @@ Condition with_random_field() {
   return {Message("{} other than none", Key("friction.random_key")),
           [](const Case& c) { return c.friction_along_x.random_key != "none"; }};
 }
-Condition never_stuck() {
+Condition with_state() {
   return {Message("{} with a state", Key("friction.law")),
-          [](const Case& c) { return !c.friction.states().empty(); }};
+          [](const Case& c) { return c.friction.has_state(); }};
 }
 
 void add_title(Entries& all) {
@@ -489,7 +487,7 @@ void add_friction(Entries& all) {
                "v* of that rate");
   friction.add("relaxation_time_s", &Regularisation::time_s, above_or_infinite(0), "t* of that rate");
   Table tip(all, "friction", std::identity(), Stage::motion);
-  tip.only_with = never_stuck();
+  tip.only_with = with_state();
   tip.optional(
       "tip_slip_rate_m_per_s", &Case::tip_slip_rate_m_per_s, above(0), 0.1,
       "slip rate beyond which a node counts as slipping: a front's tip. Without it that at which the "

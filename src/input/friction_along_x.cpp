@@ -178,12 +178,9 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
 
 double tip_slip_rate_m_per_s(const Case& config) {
   if (config.tip_slip_rate_m_per_s) return *config.tip_slip_rate_m_per_s;
-  const auto compliance = [](const solid::Material& m) {
-    return solid::shear_speed_m_per_s(m) / solid::shear_modulus_Pa(m);
-  };
-  double per_Pa = compliance(config.material);
-  if (has_base_body(config)) per_Pa += compliance(base_material(config));
-  return std::max(per_Pa * config.friction.parameter("a") * nominal_pressure_Pa(config),
+  double admittance = solid::shear_admittance_m_per_Pa_s(config.material);
+  if (has_base_body(config)) admittance += solid::shear_admittance_m_per_Pa_s(base_material(config));
+  return std::max(admittance * config.friction.parameter("a") * nominal_pressure_Pa(config),
                   10 * config.friction.parameter("V_i_m_per_s"));
 }
 
@@ -192,7 +189,7 @@ interface::ContactModel contact_model(const Case& config, const std::vector<doub
   interface::ContactModel model {
     config.friction, config.regularisation, config.contact
   };
-  if (!config.friction.states().empty()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
+  if (config.friction.has_state()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
   if (auto laws = places.of(friction_at(config, x_m)); !laws.empty())
     model.of_nodes = interface::NodeLaws(std::move(laws));
   return model;

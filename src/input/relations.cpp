@@ -36,7 +36,7 @@ void check_friction(const Case& config) {
 
 /// What a law that never sticks cannot be combined with.
 void check_state(const Case& config) {
-  if (config.friction.states().empty()) return;
+  if (!config.friction.has_state()) return;
   const Key law("friction.law");
   const auto refuse = [&](const Key& key, const char* value, const char* instead) {
     throw UserError("{} = {} asks whether nodes stick, which they never do under {} = {}; choose {}", key,

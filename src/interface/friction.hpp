@@ -51,6 +51,8 @@ class FrictionLaw {
   std::string_view name() const { return name_; }
   /// Those that the law's struct declares as the array `states`; arrays Interface::law_states are theirs.
   std::span<const LawState> states() const { return states_; }
+  /// Whether it has any: such a law never sticks.
+  bool has_state() const { return !states_.empty(); }
 
   /// The struct again; its lists are those of this law, which must outlive it.
   /// @pre it is this law's

@@ -133,7 +133,8 @@ Partition partition_bodies(std::span<const BodySource> bodies, std::span<const B
   };
   const auto why_not = [&](int n) { return reason_against(divided(n), widest_cell, corner); };
   if (const auto reason = why_not(n_subdomains); !reason.empty()) {
-    // Each is as wide as its halo at least; so many are divided that each try takes its time.
+    // A subdomain is at least as wide as its halo; without this bound a division into millions would be
+    // tried.
     int most = std::clamp(divided(1).n_columns() / (per_step + widest_cell), 1, n_subdomains - 1);
     while (!why_not(most).empty()) --most;
     throw UserError("{}; choose at most {}", reason, most);

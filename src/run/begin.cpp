@@ -50,8 +50,8 @@ Message idle_trigger(const input::Case& config, const statics::Equilibrium& stat
 std::vector<double> trigger_forces(const input::Case& config, const statics::Equilibrium& state,
                                    const PerNode& mu_s, std::span<const double> tributary_m) {
   auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger, mu_s);
-  const bool pushes = is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
-  if (pushes && std::ranges::all_of(forces, [](double force) { return force == 0; }))
+  if (input::is_pushed_at_edge(config) &&
+      std::ranges::all_of(forces, [](double force) { return force == 0; }))
     throw UserError(idle_trigger(config, state, mu_s, tributary_m)).about("event.trigger_form");
   return forces;
 }
@@ -61,9 +61,7 @@ std::vector<double> starting_forces_N_per_m(const input::Case& config, const sta
                                             const PerNode& mu_s, const mesh::Mesh& mesh,
                                             std::span<const double> tributary_m) {
   auto forces = trigger_forces(config, state, mu_s, tributary_m);
-  if (config.event != interface::EventKind::nucleation ||
-      config.nucleation.form != interface::NucleationForm::overstress)
-    return forces;
+  if (!input::is_overstressed(config)) return forces;
   const auto B = patch(config.nucleation, mesh);
   for (std::size_t k = 0; k < B.size(); ++k)
     if (state.contact[k] != statics::Contact::open)

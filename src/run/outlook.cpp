@@ -19,8 +19,6 @@ namespace slipfront::run {
 namespace {
 
 using interface::EventKind;
-using interface::NucleationForm;
-using interface::TriggerForm;
 
 stability::NodeBefore node_before(const interface::FrictionLaw& law, double t_Pa, double p_Pa) {
   return {t_Pa,
@@ -87,12 +85,10 @@ std::string doubt_of_beginning(const input::Case& config, const std::vector<Plac
                        n_beyond, nodes.size());
   if (nodes.empty() || n_beyond > 0 || nodes.front().node.state) return {};
   if (config.event == EventKind::none) return "event.kind = none, and t is below mu_s p at all nodes inside";
-  const bool pushes = config.trigger.form != TriggerForm::weakened;
-  if (interface::is_at_edge(config.event) && pushes && config.trigger.amount < 1)
+  if (input::is_pushed_at_edge(config) && config.trigger.amount < 1)
     return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below mu_s p",
                        config.trigger.amount);
-  if (config.event != EventKind::nucleation || config.nucleation.form != NucleationForm::overstress)
-    return {};
+  if (!input::is_overstressed(config)) return {};
   const double share = overstressed_share(config, nodes);
   if (share >= 1) return {};
   return fmt::format("nucleation.overstress_Pa = {:g} brings t to no more than {:.3g} of mu_s p",
@@ -142,7 +138,7 @@ std::string caution_of_mesh(double zone_elements, bool may_pass_c_S) {
 /// Empty, or that the trigger's force acts against the shear.
 std::string caution_of_trigger(const input::Case& config, const statics::Equilibrium& before,
                                std::span<const double> tributary_m) {
-  if (!interface::is_at_edge(config.event) || config.trigger.form == TriggerForm::weakened) return {};
+  if (!input::is_pushed_at_edge(config)) return {};
   const auto zone = motion::trigger_zone(before, config.event, config.trigger.zone_m);
   const double direction = motion::load_direction(before, tributary_m, zone);
   if (direction * statics::contact_force(before, tributary_m).shear_N_per_m >= 0) return {};
@@ -174,7 +170,7 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   RuptureOutlook o;
   o.of_nodes = stability::outlook(bodies_of(config), nodes);
   o.trigger_length_m = trigger_length_m(config);
-  if (!config.friction.states().empty()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
+  if (config.friction.has_state()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
   if (const auto half_m = o.of_nodes.supershear_half_length_m;

@@ -29,6 +29,10 @@ double shear_speed_m_per_s(const Material& m) {
   return std::sqrt(shear_modulus_Pa(m) / m.density_kg_per_m3);
 }
 
+double shear_admittance_m_per_Pa_s(const Material& m) {
+  return shear_speed_m_per_s(m) / shear_modulus_Pa(m);
+}
+
 double rayleigh_speed_m_per_s(const Material& m) {
   const double c_L = longitudinal_speed_m_per_s(m);
   const double c_S = shear_speed_m_per_s(m);

@@ -23,7 +23,9 @@ double longitudinal_modulus_Pa(const Material& material);
 double uniaxial_modulus_Pa(const Material& material);
 double longitudinal_speed_m_per_s(const Material& material);  ///< c_L in the plane chosen
 double shear_speed_m_per_s(const Material& material);         ///< c_S
-double rayleigh_speed_m_per_s(const Material& material);      ///< c_R, root of the Rayleigh function
+/// Velocity per traction of a shear wave: c_S/G, one over the impedance rho c_S.
+double shear_admittance_m_per_Pa_s(const Material& material);
+double rayleigh_speed_m_per_s(const Material& material);  ///< c_R, root of the Rayleigh function
 
 /// Plane elasticity matrix for (e_xx, e_yy, 2 e_xy), row-major, Pa.
 std::array<double, 9> elasticity_Pa(const Material& material);

@@ -133,7 +133,7 @@ Spread spread_of(std::vector<double> values) {
 
 namespace {
 
-/// The strength at a tip follows its slip rate: S does not tell.
+/// S is not defined: the strength at a tip depends on its slip rate.
 void set_lengths_of_state(const std::vector<NodeBefore>& nodes, Outlook& o) {
   const auto median = [&](auto length_m) {
     return median_length_m(nodes, &NodeBefore::state,
@@ -146,7 +146,7 @@ void set_lengths_of_state(const std::vector<NodeBefore>& nodes, Outlook& o) {
       median([](double mu, const State& s, double p) { return process_zone_m(mu, s.b * p, s.d_c_m); });
   o.unstable_wavelength_m = median(unstable_wavelength_m);
   o.S = o.drop_ratio = {nan, nan, nan};
-  o.regime = o.n_weakening > 0 ? "unknown: the strength at a tip follows its slip rate"
+  o.regime = o.n_weakening > 0 ? "unknown: the strength at a tip depends on its slip rate"
                                : "none: friction does not weaken at any node";
 }
 

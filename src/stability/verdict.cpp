@@ -97,10 +97,8 @@ double damping_length_m(const Bodies& bodies) {
 }
 
 double radiation_damping_Pa_s_per_m(const Bodies& bodies) {
-  const auto yields = [](const solid::Material& m) {
-    return solid::shear_speed_m_per_s(m) / solid::shear_modulus_Pa(m);
-  };
-  return 1 / (yields(bodies.above) + (bodies.below ? yields(*bodies.below) : 0));
+  const double below = bodies.below ? solid::shear_admittance_m_per_Pa_s(*bodies.below) : 0;
+  return 1 / (solid::shear_admittance_m_per_Pa_s(bodies.above) + below);
 }
 
 bool growth_is_unbounded(const Bodies& bodies, const Sliding& sliding) {

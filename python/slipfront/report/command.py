@@ -32,10 +32,10 @@ def write_report(folder: Path, file: Path) -> list[str]:
         raise DataError(f"{folder}: holds no results of a run, a study, a sweep or a reproduction")
     with matplotlib.rc_context(RC):
         page = guarded(folder, lambda: kind.page(folder, file))
-    told = write_page(page, file)
+    notes = write_page(page, file)
     if exists(folder / "run.json") and read_list(folder) is None:
-        told.append(f"{folder}: has no {LIST}: nothing tells whether its files are those that were written")
-    return told
+        notes.append(f"{folder}: has no {LIST}, so that its files cannot be checked")
+    return notes
 
 
 def main(arguments: list[str]) -> int:
