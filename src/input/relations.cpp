@@ -199,7 +199,7 @@ void check_trigger(const Case& config) {
 void check_nucleation(const Case& config) {
   if (config.event != EventKind::nucleation) return;
   const auto& n = config.nucleation;
-  const double width_m = config.plate.width_m, reach_m = n.half_length_m + n.taper_m;
+  const double width_m = config.plate.width_m, reach_m = n.reach_m();
   const Key half_length("nucleation.half_length_m"), taper("nucleation.taper_m"), width("plate.width_m");
   if (n.x_m < 0 || n.x_m > width_m)
     throw UserError("{} is {:.12g} m; it must be on the interface, at 0 to {:.12g} m", Key("nucleation.x_m"),
@@ -238,8 +238,18 @@ void check_fronts(const FrontSettings& fronts, const mesh::Plate& plate) {
                     Key("fronts.crack_share"), fronts.crack_share);
 }
 
+/// The critical shear is that at which t/p reaches mu_s.
+void check_cohesion(const Case& config) {
+  const auto& table = config.friction_along_x.table.keys;
+  const Key key("friction.cohesion_Pa");
+  if (is_prestressed(config)) return;
+  if (config.friction.cohesion_Pa() > 0 || std::ranges::find(table, leaf_of(key.name)) != table.end())
+    throw UserError("{} needs {} = prestress: statics find the shear at which t/p reaches mu_s; remove it",
+                    key, Key("loading.method"));
+}
+
 void check_regularisation(const interface::Regularisation& relaxation) {
-  if (relaxation.relaxed == interface::Relaxed::none) return;
+  if (!has_rate(relaxation)) return;
   const Key length("friction.relaxation_length_m");
   if (!std::isfinite(relaxation.length_m) && !std::isfinite(relaxation.time_s))
     throw UserError("{} needs a finite {} or {:leaf}; set one", Key("friction.regularisation"), length,
@@ -340,6 +350,7 @@ void check_relations(const Case& config, const Document& document) {
   check_solver(config);
   check_base(config, document);
   check_state(config);
+  check_cohesion(config);
   check_trigger(config);
   check_nucleation(config);
   check_fronts(config.fronts, config.plate);

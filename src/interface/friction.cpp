@@ -13,6 +13,9 @@ template <class Law>
 LawDescription describe_law() {
   LawDescription description{Law::name, Law::help, Law{}, {}, {}};
   for (const auto& p : Law::parameters()) description.parameters.push_back({p.key, p.min, p.max, p.help});
+  if constexpr (!HasState<Law>)
+    description.parameters.push_back(
+        {FrictionLaw::cohesion_key, 0, 1e15, "strength in contact besides mu p, before and after slip"});
   if constexpr (requires { Law::lists(); })
     for (const auto& list : Law::lists())
       description.lists.push_back({list.key, list.min, list.max, list.help});
@@ -63,6 +66,10 @@ const LawDescription& description_of(const FrictionLaw& law) {
 
 double static_coefficient(const FrictionLaw& law) {
   return visit(law, [](const auto& l) { return l.static_coefficient(); });
+}
+
+double static_strength_Pa(const FrictionLaw& law, double p_Pa) {
+  return static_coefficient(law) * p_Pa + law.cohesion_Pa();
 }
 
 double kinetic_coefficient(const FrictionLaw& law) {

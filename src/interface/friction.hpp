@@ -24,10 +24,12 @@ namespace slipfront::interface {
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
 
-/// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states.
+/// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states. One
+/// without a state has a cohesion besides its own parameters.
 class FrictionLaw {
  public:
   static constexpr std::size_t max_parameters = 8;
+  static constexpr const char* cohesion_key = "cohesion_Pa";
   using Lists = std::vector<std::vector<double>>;
 
   /// The registry's first law with its defaults.
@@ -36,7 +38,7 @@ class FrictionLaw {
   template <class Law>
   requires requires { Law::parameters(); }
   FrictionLaw(const Law& law) : name_(Law::name) {
-    static_assert(Law::parameters().size() <= max_parameters);
+    static_assert(Law::parameters().size() + (HasState<Law> ? 0 : 1) <= max_parameters);
     auto value = values_.begin();
     for (const auto& p : Law::parameters()) *value++ = law.*p.member;
     if constexpr (requires { Law::lists(); }) {
@@ -68,6 +70,9 @@ class FrictionLaw {
     }
     return law;
   }
+
+  /// Strength in contact besides mu p; 0 of a law with a state, which has no such parameter.
+  double cohesion_Pa() const { return has_state() ? 0 : parameter(cohesion_key); }
 
   /// @pre the law has this parameter, named as in the table [friction]
   double& parameter(std::string_view key);
@@ -108,6 +113,8 @@ const std::vector<LawDescription>& law_descriptions();
 const LawDescription& description_of(const FrictionLaw& law);
 
 double static_coefficient(const FrictionLaw& law);
+/// Traction that an interface at rest bears under a pressure p > 0, cohesion included.
+double static_strength_Pa(const FrictionLaw& law, double p_Pa);
 /// The coefficient that a weakening law falls to.
 double kinetic_coefficient(const FrictionLaw& law);
 /// mu after a slip path and at a slip rate |v|; of a law with a state that of steady sliding.

@@ -46,7 +46,7 @@ struct Interface {
   std::vector<double> mass_per_length_kg_m2;  ///< lumped mass over tributary length
   /// Effective mass along x over that along y, mass_per_length_kg_m2: 1 but for nodes with dashpots.
   std::vector<double> tangential_mass_ratio;
-  /// 1 is the full law; mu = mu_k + intact (mu_law - mu_k), so that 0 is a node weakened for good.
+  /// Below 1 the coefficient is at most mu_k + intact (mu_s - mu_k): 0 is a node without more than mu_k.
   std::vector<double> intact;
   // The motion, gathered from and scattered to the plate.
   std::vector<double> v_x_m_per_s, v_y_m_per_s;  ///< trial half-step velocity in, corrected velocity out
@@ -100,7 +100,7 @@ inline constexpr std::array<InterfaceField, 18> interface_fields = {{
     {"initial_gap", "m", FieldKind::body, &Interface::initial_gap_m},
     {"mass_per_length", "kg/m2", FieldKind::body, &Interface::mass_per_length_kg_m2},
     {"tangential_mass_ratio", "1", FieldKind::body, &Interface::tangential_mass_ratio, 1},
-    {"intact", "1", FieldKind::load, &Interface::intact, 1},
+    {"intact", "1", FieldKind::result, &Interface::intact, 1},
     {"v_x", "m/s", FieldKind::memory, &Interface::v_x_m_per_s},
     {"v_y", "m/s", FieldKind::memory, &Interface::v_y_m_per_s},
     {"u_y", "m", FieldKind::trial, &Interface::u_y_m},

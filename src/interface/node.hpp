@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "interface/friction/parameter.hpp"
 #include "interface/interface.hpp"
 #include "interface/regularisation.hpp"
@@ -27,10 +28,10 @@ struct Node {
   std::array<V, n_law_states> law_states;
 };
 
-/// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
+/// The most that the coefficient of a weakened node may be; see Interface::intact.
 template <class V>
-inline V weakened(V mu, V mu_k, V intact) {
-  return mu - (1 - intact) * (mu - mu_k);
+inline V weakened(V mu_at_rest, V mu_k, V intact) {
+  return select(intact < 1, mu_k + intact * (mu_at_rest - mu_k), V{} + infinity);
 }
 
 /// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
@@ -58,14 +59,35 @@ inline void press_locked(N& n, V impedance, double per_step) {
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
+/// The slip rate of the next evaluation: the mean one that the last gave; where friction rises with the slip
+/// rate, by Newton's step to the solution, as that iteration would swing about it where friction is steep.
+/// @param compliance  what a traction over p takes off the mean rate
+template <class Mu, class V>
+inline V next_rate(const Mu& mu, V rate, V mean_rate, V slip_m, V compliance, Mask<V> sticks) {
+  if constexpr (requires { mu.slope_s_per_m(rate, slip_m); }) {
+    const V slope = mu.slope_s_per_m(absolute(rate), slip_m);
+    if (any(slope > 0)) {
+      const V g = select(sticks, V{}, positive_part(slope) * compliance);
+      return (mean_rate + g * rate) / (1 + g);
+    }
+  }
+  return mean_rate;
+}
+
 /// Friction of a law by which nodes stick or slip.
 /// @param impedance_x  effective mass along x over tributary length and dt
 template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Mu, class Form, class V>
 inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
-  const auto& [mu, mu_at_rest, mu_k] = law;
+  const auto& [mu, mu_at_rest, mu_k, cohesion_of_law_Pa] = law;
   const V p = n.p_Pa;
+  const V cohesion = select(p > 0, cohesion_of_law_Pa, V{});
+  const V most = weakened(mu_at_rest, mu_k, n.intact);
+  const auto coefficient = [&](V speed, V slip) {
+    const V of_law = mu(speed, slip);
+    return select(of_law < most, of_law, most);
+  };
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
   const auto step = form.step(absolute(last_rate));
@@ -86,24 +108,24 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
   Mask<V> sticks{};
   Memory<V> now;
   for (int k = 0; k < n_evaluations; ++k) {
-    const V mu_now = weakened(mu(absolute(rate), n.slip_m), mu_k, n.intact);
+    const V mu_now = coefficient(absolute(rate), n.slip_m);
     now = form.now(step, n.memory, mu_now, p);
-    strength = form.strength(mu_now, p, now);
+    strength = form.strength(mu_now, p, now) + cohesion;
     if (k == 0) first_strength = strength;
     sticks = along <= strength;  // not the contrary, so that a motion that is not a number is seen as slip
     t = select(sticks, t_stop, copy_sign(strength, direction));
     v_x = select(sticks, V{}, v_trial - t / impedance_x);
     const V mean_rate = 0.5 * (last_rate + v_x);
     if (!any(mean_rate != rate)) break;  // further evaluations would repeat this one
-    rate = mean_rate;
+    rate = next_rate(mu, rate, mean_rate, n.slip_m, 0.5 * p / impedance_x, sticks);
   }
   const Mask<V> slipping = !sticks && p > 0;
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
-  V mu_stuck = mu_at_rest;
-  if constexpr (slip_memory != SlipMemory::none) mu_stuck = mu(V{}, slip);
-  const V strength_at_rest = form.strength(weakened(mu_stuck, mu_k, n.intact), p, now);
+  V mu_stuck = select(mu_at_rest < most, mu_at_rest, most);
+  if constexpr (slip_memory != SlipMemory::none) mu_stuck = coefficient(V{}, slip);
+  const V strength_at_rest = form.strength(mu_stuck, p, now) + cohesion;
 
   if constexpr (predicts) n.acceleration_m_per_s2 = select(sticks, V{}, (v_x - last_rate) * (1 / dt_s));
   n.v_x_m_per_s = v_x;

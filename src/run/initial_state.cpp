@@ -174,7 +174,7 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
-  meshes.mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
+  meshes.mu_s = ratios_at_rest(config, meshes.plate);
   if (!is_prestressed(config)) return meshes;
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
   starting_loads(config, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
@@ -222,7 +222,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_cells = n_cells_of(initial.mesh) + (initial.base ? n_cells_of(*initial.base) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   initial.mu_s = std::move(meshes.mu_s);
-  const auto mu_s = static_coefficients(config, initial.mu_s);
+  const auto mu_s = ratios_at_rest(config, initial.mu_s);
   if (is_prestressed(config)) {
     initial.prescribed = true;
     initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
@@ -276,7 +276,7 @@ std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes&
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (meshes.base) base.emplace(statics::ElasticBody{*meshes.base, base_material});
-  const auto mu_s = static_coefficients(config, meshes.mu_s);
+  const auto mu_s = ratios_at_rest(config, meshes.mu_s);
   const statics::Statics statics({meshes.plate, config.material}, base, config.loading,
                                  at_all_nodes(mu_s, meshes.plate),
                                  interface::static_coefficient_key(config.friction));

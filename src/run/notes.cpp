@@ -114,8 +114,11 @@ void add_lengths(const input::Case& config, Notes& notes) {
   };
   if (interface::is_at_edge(config.event)) add_short("event.trigger_zone_m", config.trigger.zone_m);
   if (config.event == interface::EventKind::nucleation)
-    add_short("2 nucleation.half_length_m + taper_m",
-              2 * config.nucleation.half_length_m + config.nucleation.taper_m);
+    add_short(config.nucleation.profile == interface::NucleationProfile::smooth
+                  ? "2 nucleation.half_length_m"
+                  : "2 nucleation.half_length_m + taper_m",
+              2 * config.nucleation.half_length_m +
+                  (config.nucleation.reach_m() - config.nucleation.half_length_m));
   if (config.event == interface::EventKind::nucleation &&
       2 * config.nucleation.half_length_m > config.plate.width_m)
     notes.push_back(fmt::format(

@@ -45,8 +45,6 @@ struct FrictionTableLaw {
       return Message("{} and {} must be of one length, 2 to {} numbers", rows, coefficients, max_rows);
     if (at.front() != 0 || std::ranges::adjacent_find(at, std::greater_equal()) != at.end())
       return Message("{} must begin with 0 and ascend", rows);
-    if (mu.front() < std::ranges::max(mu))
-      return Message("{} must be largest in its first row, at rest", coefficients);
     return {};
   }
 
