@@ -286,9 +286,8 @@ Condition tapered() {
             return c.event == EventKind::nucleation && c.nucleation.profile == NucleationProfile::tapered;
           }};
 }
-Condition weakened_patch() {
-  return {Message("{} = nucleation and {} = weakened", Key("event.kind"), Key("nucleation.form")),
-          [](const Case& c) { return c.event == EventKind::nucleation && !is_overstressed(c); }};
+Condition forced() {
+  return {Message("{} = nucleation and {} = forced", Key("event.kind"), Key("nucleation.form")), is_forced};
 }
 Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
@@ -478,8 +477,10 @@ void add_loading(Entries& all) {
 void add_prestress(Entries& all) {
   Table prestress(all, "prestress", &Case::prestress, Stage::tractions);
   prestress.only_with = uniform();
-  prestress.add("t_Pa", &Prestress::t_Pa, any(),
-                "uniform tangential traction, positive where it drives the plate to +x");
+  prestress.optional(
+      "t_Pa", &Prestress::t_Pa, any(), 1e6,
+      "uniform tangential traction, positive where it drives the plate to +x; under a friction "
+      "law with a state it may follow, see friction/rate_and_state.md");
   prestress.add("p_Pa", &Prestress::p_Pa, above(0), "uniform pressure");
   prestress.only_with = prestressed();
   prestress.add("t_rate_Pa_per_s", &Prestress::t_rate_Pa_per_s, any(),
@@ -576,10 +577,14 @@ void add_event(Entries& all) {
               "the trigger is taken away this long after its start");
   Table nucleation(all, "nucleation", &Case::nucleation, Stage::event);
   nucleation.only_with = nucleated();
-  nucleation.word("form", &Nucleation::form,
-                  {{"weakened", NucleationForm::weakened}, {"overstress", NucleationForm::overstress}},
-                  "patch with a profile B: mu at most mu_k + (1 - B) (mu_s - mu_k), or an added "
-                  "tangential traction, with the trigger's ramp and duration");
+  nucleation.word(
+      "form", &Nucleation::form,
+      {{"weakened", NucleationForm::weakened},
+       {"forced", NucleationForm::forced},
+       {"overstress", NucleationForm::overstress}},
+      "patch with a profile B: mu = mu_k + (1 - B) (mu of the law - mu_k); the same in time from its "
+      "centre, mu of the law but at most mu_s - f B (mu_s - mu_k), f from 0 to 1; or an added "
+      "tangential traction, with the trigger's ramp and duration");
   nucleation.add("x_m", &Nucleation::x_m, any(), "centre of the patch, from the plate's left edge");
   nucleation.word("profile", &Nucleation::profile,
                   {{"tapered", NucleationProfile::tapered}, {"smooth", NucleationProfile::smooth}},
@@ -590,11 +595,15 @@ void add_event(Entries& all) {
   nucleation.only_with = tapered();
   nucleation.add("taper_m", &Nucleation::taper_m, at_least(0),
                  "B falls to 0 over this length, as half a cosine wave");
-  nucleation.only_with = weakened_patch();
-  nucleation.add("front_speed_m_per_s", &Nucleation::front_speed_m_per_s, above_or_infinite(0),
-                 "speed at which the weakened patch grows from its centre; inf: all of it at once");
-  nucleation.add("weakening_time_s", &Nucleation::weakening_time_s, at_least(0),
-                 "time over which friction falls at a node once the patch has reached it, linearly");
+  nucleation.only_with = forced();
+  nucleation
+      .add("front_speed_m_per_s", &Nucleation::front_speed_m_per_s, above(0),
+           "speed at which the patch grows from its centre")
+      .has_to_be_set = true;
+  nucleation
+      .add("weakening_time_s", &Nucleation::weakening_time_s, at_least(0),
+           "time over which friction falls at a node that the patch has reached, linearly")
+      .has_to_be_set = true;
   nucleation.only_with = overstressed();
   nucleation.add("overstress_Pa", &Nucleation::overstress_Pa, any(), "added tangential traction where B = 1");
 }
@@ -709,7 +718,7 @@ std::string describe(const Range& range, const std::string& unit) {
 
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
-      {"m", 1e-12, 1e6},      {"s", 1e-15, 1e6},     {"Pa", 1e-6, 1e15},
+      {"m", 1e-12, 1e6},      {"s", 1e-15, 1e12},    {"Pa", 1e-6, 1e15},
       {"kg/m3", 1e-6, 1e6},   {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-12, 1e6},
       {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},  {"", 1e-18, 1e9}};
   return all;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "interface/friction/registry.hpp"
 
 namespace slipfront::interface {
@@ -38,10 +39,12 @@ std::size_t place_of(std::string_view key, const std::vector<LawDescription::Key
 FrictionLaw::FrictionLaw() : FrictionLaw(FirstLaw{}) {}
 
 double& FrictionLaw::parameter(std::string_view key) {
+  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
 double FrictionLaw::parameter(std::string_view key) const {
+  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
@@ -102,6 +105,20 @@ std::optional<StateResponse> state_response(const FrictionLaw& law, double speed
       const double V = std::max(speed_m_per_s, l.V_i_m_per_s);
       return StateResponse{l.a, l.a - V * l.steady_slope_s_per_m(V), l.d_c_m, V};
     }
+  });
+}
+
+double traction_before_Pa(const FrictionLaw& law, double p_Pa) {
+  return visit(law, [&]<class Law>(const Law& l) {
+    if constexpr (HasState<Law>) return l.traction_before_Pa(p_Pa);
+    return nan;
+  });
+}
+
+void settle_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa) {
+  visit(law, [&]<class Law>(const Law& l) {
+    if constexpr (HasState<Law>)
+      if (l.theta_i_s > 0) law.parameter("V_i_m_per_s") = l.slip_rate_before_m_per_s(t_Pa, p_Pa);
   });
 }
 

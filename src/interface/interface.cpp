@@ -52,6 +52,7 @@ auto read_nodes(const Interface& s, Place at) {
   n.mass_per_length_kg_m2 = at.read(s.mass_per_length_kg_m2);
   n.tangential_mass_ratio = at.read(s.tangential_mass_ratio);
   n.intact = at.read(s.intact);
+  n.is_forced = s.is_forced;
   n.v_x_m_per_s = at.read(s.v_x_m_per_s);
   n.v_y_m_per_s = at.read(s.v_y_m_per_s);
   n.u_y_m = at.read(s.u_y_m);
@@ -175,7 +176,7 @@ bool update_by(const FrictionLaw& of, const Form& form, double dt_s, Interface& 
   Answers answers;
   const auto all = [](double value) { return SimdVector{} + value; };
   const LawOverArrays asking{
-      {{&answers}, all(static_coefficient(of)), all(kinetic_coefficient(of)), all(of.cohesion_Pa())}};
+      {{&answers}, all(static_coefficient(of)), all(kinetic_coefficient(of)), all(of.cohesion_Pa()), all(0)}};
   while (true) {
     answers.asked = false;
     answers.speed_m_per_s.assign(padded, 0);
@@ -200,8 +201,8 @@ void start_contact(const ContactModel& model, Interface& s) {
   with_form(model.regularisation, 0, [&](const auto& form) {
     for (std::size_t i = 0; i < s.size(); ++i) {
       const FrictionLaw& law = model.law_at(i);
-      const double mu_s = static_coefficient(law),
-                   mu_0 = std::min(mu_s, weakened(mu_s, kinetic_coefficient(law), s.intact[i]));
+      const double mu_s = static_coefficient(law), mu_k = kinetic_coefficient(law);
+      const double mu_0 = weakened(mu_s, mu_s, mu_k, s.intact[i], s.is_forced);
       s.strength_Pa[i] = mu_0 * s.p_Pa[i] + (s.p_Pa[i] > 0 ? law.cohesion_Pa() : 0);
       const auto memory = form.initial(mu_0, s.p_Pa[i]);
       s.relaxed_Pa[i] = memory.relaxed_Pa;

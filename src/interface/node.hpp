@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "base/lanes.hpp"
-#include "base/numbers.hpp"
 #include "interface/friction/parameter.hpp"
 #include "interface/interface.hpp"
 #include "interface/regularisation.hpp"
@@ -26,12 +25,16 @@ struct Node {
   V acceleration_m_per_s2;
   Mask<V> locked;
   std::array<V, n_law_states> law_states;
+  bool is_forced = false;
 };
 
-/// The most that the coefficient of a weakened node may be; see Interface::intact.
+/// The coefficient of a node that may be weakened, see Interface::intact; exactly the law's where intact
+/// is 1.
 template <class V>
-inline V weakened(V mu_at_rest, V mu_k, V intact) {
-  return select(intact < 1, mu_k + intact * (mu_at_rest - mu_k), V{} + infinity);
+inline V weakened(V mu, V mu_at_rest, V mu_k, V intact, bool is_forced) {
+  if (!is_forced) return mu - (1 - intact) * (mu - mu_k);
+  const V most = mu_k + intact * (mu_at_rest - mu_k);
+  return select(intact < 1 && most < mu, most, mu);
 }
 
 /// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
@@ -59,20 +62,30 @@ inline void press_locked(N& n, V impedance, double per_step) {
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
-/// The slip rate of the next evaluation: the mean one that the last gave; where friction rises with the slip
-/// rate, by Newton's step to the solution, as that iteration would swing about it where friction is steep.
-/// @param compliance  what a traction over p takes off the mean rate
+/// At which slip rate friction that rises with it is evaluated. Where it rises steeply against the node's
+/// impedance the iteration of weakening laws would diverge, and the middle of the step leave a swing about
+/// the balance: the rate is so much nearer to the end of the step that a linear law comes to its balance in
+/// one, and found by Newton's steps.
 template <class Mu, class V>
-inline V next_rate(const Mu& mu, V rate, V mean_rate, V slip_m, V compliance, Mask<V> sticks) {
-  if constexpr (requires { mu.slope_s_per_m(rate, slip_m); }) {
-    const V slope = mu.slope_s_per_m(absolute(rate), slip_m);
-    if (any(slope > 0)) {
-      const V g = select(sticks, V{}, positive_part(slope) * compliance);
-      return (mean_rate + g * rate) / (1 + g);
-    }
+struct Strengthening {
+  const Mu& mu;
+  V slip_m, compliance;  ///< what a coefficient takes off the slip rate, p/impedance
+  V w;                   ///< share of the rate after the step
+
+  Strengthening(const Mu& mu_, V slip, V compliance_, V last_rate, V v_trial)
+      : mu(mu_), slip_m(slip), compliance(compliance_) {
+    const V g = slope(last_rate);
+    w = select(g > 2, 1 - 1 / select(g > 2, g, V{} + 2), V{} + 0.5);
+    w = select(last_rate * v_trial < 0, V{} + 1, w);
   }
-  return mean_rate;
-}
+  V slope(V rate) const { return positive_part(mu.slope_s_per_m(absolute(rate), slip_m)) * compliance; }
+  /// @param found  rate that the evaluation at `rate` has given
+  V next(V rate, V found, V v_trial, Mask<V> sticks) const {
+    const V g = select(sticks, V{}, w * slope(rate));
+    const V next = (found + g * rate) / (1 + g);
+    return select(next * v_trial < 0, V{}, next);
+  }
+};
 
 /// Friction of a law by which nodes stick or slip.
 /// @param impedance_x  effective mass along x over tributary length and dt
@@ -80,13 +93,11 @@ template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Mu, class Fo
 inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
-  const auto& [mu, mu_at_rest, mu_k, cohesion_of_law_Pa] = law;
+  const auto& [mu, mu_at_rest, mu_k, cohesion_of_law_Pa, strengthens] = law;
   const V p = n.p_Pa;
   const V cohesion = select(p > 0, cohesion_of_law_Pa, V{});
-  const V most = weakened(mu_at_rest, mu_k, n.intact);
   const auto coefficient = [&](V speed, V slip) {
-    const V of_law = mu(speed, slip);
-    return select(of_law < most, of_law, most);
+    return weakened(mu(speed, slip), mu_at_rest, mu_k, n.intact, n.is_forced);
   };
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
@@ -104,10 +115,16 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
     direction = select(under_way, rate, t_stop);
     along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, trial_traction);
   }
+  constexpr bool may_strengthen = !predicts && requires {
+    mu.slope_s_per_m(rate, rate);
+  };
+  const bool does_strengthen = may_strengthen && any(strengthens > 0);
   V strength{}, first_strength{}, t{}, v_x{};
   Mask<V> sticks{};
   Memory<V> now;
-  for (int k = 0; k < n_evaluations; ++k) {
+  Mask<V> goes_on = p == p;
+  constexpr int most = 40;
+  for (int k = 0; k < (does_strengthen ? most : n_evaluations); ++k) {
     const V mu_now = coefficient(absolute(rate), n.slip_m);
     now = form.now(step, n.memory, mu_now, p);
     strength = form.strength(mu_now, p, now) + cohesion;
@@ -115,15 +132,25 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
     sticks = along <= strength;  // not the contrary, so that a motion that is not a number is seen as slip
     t = select(sticks, t_stop, copy_sign(strength, direction));
     v_x = select(sticks, V{}, v_trial - t / impedance_x);
-    const V mean_rate = 0.5 * (last_rate + v_x);
-    if (!any(mean_rate != rate)) break;  // further evaluations would repeat this one
-    rate = next_rate(mu, rate, mean_rate, n.slip_m, 0.5 * p / impedance_x, sticks);
+    V next = 0.5 * (last_rate + v_x);
+    if constexpr (may_strengthen)
+      if (does_strengthen) {
+        // Lanes do not see how many evaluations others take.
+        const Strengthening rises(mu, n.slip_m, p / impedance_x, last_rate, v_trial);
+        const V solved = rises.next(rate, rises.w * v_x + (1 - rises.w) * last_rate, v_trial, sticks);
+        next = select(strengthens > 0, solved, next);
+        goes_on = goes_on && absolute(next - rate) > 1e-14 * absolute(rate);
+        if (k + 1 >= n_evaluations) goes_on = goes_on && strengthens > 0;
+        next = select(goes_on, next, rate);
+      }
+    if (!any(next != rate)) break;  // further evaluations would repeat this one
+    rate = next;
   }
   const Mask<V> slipping = !sticks && p > 0;
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
-  V mu_stuck = select(mu_at_rest < most, mu_at_rest, most);
+  V mu_stuck = weakened(mu_at_rest, mu_at_rest, mu_k, n.intact, n.is_forced);
   if constexpr (slip_memory != SlipMemory::none) mu_stuck = coefficient(V{}, slip);
   const V strength_at_rest = form.strength(mu_stuck, p, now) + cohesion;
 

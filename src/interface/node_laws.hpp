@@ -19,6 +19,7 @@ struct LawConstants {
   Coefficient mu;
   V mu_at_rest, mu_k;
   V cohesion_Pa;
+  V strengthens;  ///< 1 where mu rises with the slip rate somewhere, else 0
 };
 /// The same of a law with a state, which never sticks.
 /// @tparam Evolving  the law's evaluator for V
@@ -35,6 +36,12 @@ template <class Law, class V, class Evaluator = typename Law::template Evaluator
 using ConstantsOf =
     std::conditional_t<HasState<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
 
+/// Whether mu rises with the slip rate somewhere.
+template <class Law>
+bool strengthens(const Law& law) {
+  if constexpr (requires { law.strengthens(); }) return law.strengthens();
+  return false;
+}
 /// @param law  `of` as its struct
 template <class Law>
 ConstantsOf<Law, double> constants_of(const FrictionLaw& of, const Law& law) {
@@ -42,7 +49,8 @@ ConstantsOf<Law, double> constants_of(const FrictionLaw& of, const Law& law) {
   if constexpr (HasState<Law>)
     return {evaluator, 0};
   else
-    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa()};
+    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(),
+            strengthens(law) ? 1.0 : 0.0};
 }
 /// The values of an aggregate of them.
 template <class V, class Constants>

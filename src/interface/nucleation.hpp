@@ -11,6 +11,7 @@ namespace slipfront::interface {
 /// How a nucleation patch starts the event.
 enum class NucleationForm {
   weakened,    ///< its friction falls to mu_k for good: Interface::intact = 1 - B(x)
+  forced,      ///< the same in time, from its centre at a speed, see Interface::is_forced
   overstress,  ///< an external traction overstress_Pa B(x) along +x, times the trigger's ramp in time
 };
 
@@ -20,8 +21,8 @@ enum class NucleationProfile {
   smooth,   ///< exp[r^2/(r^2 - R^2)] within R, 0 beyond: all derivatives are continuous (SCEC TPV101)
 };
 
-/// A patch of the interface that starts the event. A weakened one may grow from its centre at a speed, its
-/// friction falling linearly over a time: forced nucleation (Andrews 1985, SCEC TPV16).
+/// A patch of the interface that starts the event. A forced one reaches r at r/front_speed, and weakens there
+/// linearly within weakening_time (Andrews 1985; SCEC TPV16).
 struct Nucleation {
   NucleationForm form = NucleationForm::weakened;
   NucleationProfile profile = NucleationProfile::tapered;
@@ -29,11 +30,9 @@ struct Nucleation {
   double half_length_m = 10e-3;
   double taper_m = 5e-3;
   double overstress_Pa = 1e6;
-  double front_speed_m_per_s = infinity;
-  double weakening_time_s = 0;
+  double front_speed_m_per_s = 600;
+  double weakening_time_s = 1e-6;
 
-  /// Whether a weakened one does not begin at once.
-  bool takes_time() const { return std::isfinite(front_speed_m_per_s) || weakening_time_s > 0; }
   /// From its centre to where B is 0.
   double reach_m() const {
     return profile == NucleationProfile::smooth ? half_length_m : half_length_m + taper_m;

@@ -114,6 +114,7 @@ void Coupling::set_loads(Loads loads) {
                    "intact of other nodes");
   loads_.intact.resize(interface_.size(), 1.0);
   interface_.intact = loads_.intact;
+  interface_.is_forced = !loads_.weakens_at_s.empty();
   trigger_nodes_.clear();
   weakening_nodes_.clear();
   for (std::size_t i = 0; i < interface_.size(); ++i) {

@@ -27,7 +27,7 @@ struct Loads {
   std::vector<double> trigger_force_N_per_m = {};
   interface::Trigger trigger = {};
   std::vector<double> intact = {};  ///< weakens nodes for good, see Interface::intact
-  /// When they begin to weaken, or empty: at once; linearly over the time.
+  /// When they are forced to weaken, linearly over the time; or empty: at once.
   std::vector<double> weakens_at_s = {};
   double weakening_time_s = 0;
   /// At which the prescribed tractions grow, everywhere alike.

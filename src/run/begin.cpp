@@ -90,9 +90,9 @@ void require_weakening(const input::Case& config, const std::vector<double>& int
   for (std::size_t i = 0; i < laws.size(); ++i)
     if (intact[i] < 1 && interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
       return;
-  throw UserError(
-      "{} = weakened does nothing where friction does not weaken at any node; choose another form",
-      Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"))
+  throw UserError("{} = {} does nothing where friction does not weaken at any node; choose another form",
+                  Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"),
+                  is_forced(config) ? "forced" : "weakened")
       .about("event.kind");
 }
 
@@ -110,7 +110,7 @@ std::vector<double> ratios_at_rest(const input::Case& config, const mesh::Mesh& 
   std::vector<double> ratios;
   for (const auto& law : laws) ratios.push_back(interface::static_coefficient(law));
   if (!is_cohesive) return ratios;
-  const auto s = prescribed_tractions(config.prestress, mesh);
+  const auto s = prescribed_tractions(config, mesh);
   for (std::size_t k = 0; k < laws.size(); ++k)
     ratios[k] = interface::static_strength_Pa(laws[k], s.p_s_Pa[k]) / s.p_s_Pa[k];
   return ratios;
@@ -121,7 +121,7 @@ double loads_settle_s(const input::Case& config) {
       (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0))
     return infinity;
   if (starts_by_force(config)) return motion::last_change_s(config.trigger);
-  if (!is_weakened_patch(config)) return 0;
+  if (!is_forced(config)) return 0;
   const auto& n = config.nucleation;
   return n.reach_m() / n.front_speed_m_per_s + n.weakening_time_s;
 }
@@ -138,7 +138,7 @@ motion::Loads starting_loads(const input::Case& config, const statics::Equilibri
   loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh,
                                                         mesh::tributary_lengths_m(mesh));
   loads.intact = intact_shares(config, state, mesh);
-  if (is_weakened_patch(config) && config.nucleation.takes_time()) {
+  if (is_forced(config)) {
     for (const auto n : mesh.interface_nodes)
       loads.weakens_at_s.push_back(from_centre_m(config.nucleation, mesh.x_m[n], mesh.period_m) /
                                    config.nucleation.front_speed_m_per_s);

@@ -184,7 +184,7 @@ void add_free_sides(const input::Case& config, Notes& notes) {
                        (has_base_body(config) && config.base.plate.sides == mesh::Sides::free);
   const auto& t_Pa = config.prestress.table.rows.t_s_Pa;
   const bool is_sheared =
-      config.prestress.file.empty() ? config.prestress.t_Pa != 0 : t_Pa.front() != 0 || t_Pa.back() != 0;
+      config.prestress.file.empty() ? config.prestress.t_Pa != 0.0 : t_Pa.front() != 0 || t_Pa.back() != 0;
   if (is_free && is_sheared)
     notes.emplace_back(
         "sides are free, but t is prescribed up to the corners: free sides bear no shear, so that this is no "

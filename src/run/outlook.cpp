@@ -201,9 +201,9 @@ RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilib
 
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) {
   if (is_prestressed(config))
-    return rupture_outlook(
-        config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)),
-        mesh::tributary_lengths_m(meshes.plate));
+    return rupture_outlook(config,
+                           statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate)),
+                           mesh::tributary_lengths_m(meshes.plate));
   const double p_Pa = input::nominal_pressure_Pa(config);
   const double strength_Pa = interface::static_strength_Pa(config.friction, p_Pa);
   auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});

@@ -51,6 +51,11 @@ struct FrictionTableLaw {
   double static_coefficient() const { return mu_factor * mu.front(); }
   double kinetic_coefficient() const { return mu_factor * std::ranges::min(mu); }
 
+  /// With the slip rate.
+  bool strengthens() const requires(!over_slip) {
+    return std::ranges::adjacent_find(mu, std::less()) != mu.end();
+  }
+
   /// Twice what mu exceeds its least by, over the slip, through the whole drop.
   double weakening_slip_m() const requires over_slip {
     const double least = std::ranges::min(mu);

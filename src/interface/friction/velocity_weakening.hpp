@@ -33,6 +33,7 @@ struct VelocityWeakening {
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }
+  bool strengthens() const { return mu_k > mu_s; }
 
   /// The law with its constants folded, for the loop over nodes.
   template <class V>
