@@ -23,6 +23,7 @@ double thinning_of_join(double courant_number, int substeps);
 namespace symmetry { Outcome verify(Effort effort); }
 namespace growing_modes { Outcome verify(Effort effort); }
 namespace growing_modes_of_two { Outcome verify(Effort effort); }
+namespace growing_modes_with_state { Outcome verify(Effort effort); }
 namespace slip_patch { Outcome verify(Effort effort); }
 namespace crack { Outcome verify(Effort effort); }
 namespace layer_spectrum { Outcome verify(Effort effort); }

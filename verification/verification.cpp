@@ -44,6 +44,8 @@ std::span<const Verification> verifications() {
       Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes::verify},
       Verification{"growing_modes_of_two", "Growth of waves between two sliding bodies",
                    growing_modes_of_two::verify},
+      Verification{"growing_modes_with_state", "Growth of waves under rate-and-state friction",
+                   growing_modes_with_state::verify},
       Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum::verify},
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch::verify},
       Verification{"impact", "Impact of a free body on the plane", impact::verify},
