@@ -52,6 +52,8 @@ std::span<const Verification> verifications() {
       Verification{"block", "Stick-slip of a block", block::verify},
       Verification{"spring_slider", "A slider on a spring under rate-and-state friction",
                    spring_slider::verify},
+      Verification{"velocity_steps", "Velocity steps and holds under rate-and-state friction",
+                   velocity_steps::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;
