@@ -54,6 +54,7 @@ std::span<const Verification> verifications() {
                    spring_slider::verify},
       Verification{"velocity_steps", "Velocity steps and holds under rate-and-state friction",
                    velocity_steps::verify},
+      Verification{"recontact", "A sliding node that leaves the plane and lands", recontact::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;
