@@ -32,6 +32,7 @@ namespace block { Outcome verify(Effort effort); }
 namespace spring_slider { Outcome verify(Effort effort); }
 namespace velocity_steps { Outcome verify(Effort effort); }
 namespace recontact { Outcome verify(Effort effort); }
+namespace stiff_base { Outcome verify(Effort effort); }
 namespace bonded_waves { Outcome verify(Effort effort); }
 // clang-format on
 
