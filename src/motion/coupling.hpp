@@ -101,6 +101,9 @@ class Coupling {
   void scatter(double dt_s, record::Energies& works);
   void scatter_both(double dt_s, record::Energies& works);
   void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const;
+  /// Before an update, which takes them on to the next one.
+  void append_law_states(record::History& history) const;
+  /// After it: what belongs to the same time.
   void append_sample(double time_s, record::History& history) const;
 
   std::vector<ContactBody> bodies_;
