@@ -49,6 +49,10 @@ class InterfaceState:
     def p_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """contact pressure, positive in compression"""
 
+    @property
+    def law_states(self) -> list[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
+        """of the state variables of the friction law, in its order"""
+
 class WaveSpeeds:
     """Wave speeds of a material."""
 
@@ -496,6 +500,12 @@ class Stepper:
     @property
     def p_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
         """[interface nodes] contact pressure, positive in compression"""
+
+    @property
+    def law_states(self) -> list[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
+        """
+        of the state variables of the friction law, in its order, [interface nodes] each, at time_s
+        """
 
     def displacement_m(self, body: int = 0) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
         """Of all nodes of a body, 0 above or 1 below: arrays u_x and u_y."""

@@ -160,8 +160,9 @@ class OpenRun:
 
     @cached_property
     def history(self) -> xr.Dataset:
-        """interface.h5: slip_m, slip_rate_m_per_s, t_Pa and p_Pa over time_s and x_m. The slip rate belongs
-        to half a (sub-)step later than the time. Of a run that is not over: what there is of it."""
+        """interface.h5: slip_m, slip_rate_m_per_s, t_Pa, p_Pa and the states of the friction law over time_s
+        and x_m. The slip rate belongs to half a (sub-)step later than the time. Of a run that is not over:
+        what there is of it."""
         file = result_file(self.folder / "interface.h5")
         if is_open(file):
             return self._open_history(file)

@@ -433,13 +433,19 @@ def read_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
 
 
 def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Times and, by name, HISTORY_FIELDS [times, nodes] of an open interface.h5; a cut row is left out."""
+    """Times and, by name, HISTORY_FIELDS and the law's states [times, nodes] of an open interface.h5; a cut
+    row is left out."""
+    told = file.parent / "run.json"
+    states = read_json_table(told).get("law_states", [])
+    is_list = isinstance(states, list) and all(isinstance(name, str) for name in states)
+    require(is_list, told, "'law_states' are not names")
+    names = (*HISTORY_FIELDS, *states)
     data = read_bytes(file)[head_bytes(file) :]
     n = len(x_m)
-    width = 1 + len(HISTORY_FIELDS) * n
+    width = 1 + len(names) * n
     n_rows = len(data) // (8 * width)
     rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
-    fields = {name: rows[:, 1 + k * n : 1 + (k + 1) * n] for k, name in enumerate(HISTORY_FIELDS)}
+    fields = {name: rows[:, 1 + k * n : 1 + (k + 1) * n] for k, name in enumerate(names)}
     return rows[:, 0], fields
 
 

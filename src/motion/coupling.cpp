@@ -168,6 +168,7 @@ void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, reco
   else
     gather_both(dt_s, impulse_s);
   std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
+  if (sample != nullptr) append_law_states(*sample);
   const bool changed = interface::update_contact(contact_, dt_s, interface_);
   observer.observe(time_s, interface_, changed);
   if (sample != nullptr) append_sample(time_s, *sample);
@@ -340,12 +341,19 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
           0.5 * impulse_s * loads_.trigger_force_N_per_m[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
+static void append(std::vector<double>& to, const std::vector<double>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+void Coupling::append_law_states(record::History& history) const {
+  history.law_states.resize(interface_.law_states.size());
+  for (std::size_t k = 0; k < history.law_states.size(); ++k)
+    append(history.law_states[k], interface_.law_states[k]);
+}
+
 void Coupling::append_sample(double time_s, record::History& history) const {
   history.time_s.push_back(time_s);
   for (std::size_t i = 0; i < interface_.size(); ++i) history.slip_m.push_back(slip_m(i));
-  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
   append(history.slip_rate_m_per_s, interface_.slip_rate_m_per_s);
   append(history.t_Pa, interface_.t_Pa);
   append(history.p_Pa, interface_.p_Pa);

@@ -112,6 +112,9 @@ class Coupling {
   /// Brings weakening nodes to this time.
   void weaken(double time_s);
   void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const;
+  /// Before an update, which takes them on to the next one.
+  void append_law_states(record::History& history) const;
+  /// After it: what belongs to the same time.
   void append_sample(double time_s, record::History& history) const;
 
   std::vector<ContactBody> bodies_;

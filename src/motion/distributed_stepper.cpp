@@ -240,8 +240,10 @@ std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t ma
   int widest = 0;
   for (const auto& own : whole_.own_interface_nodes) widest = std::max(widest, own.end - own.begin);
   const double of_update = TractionLog::bytes_per_update(widest, observer.finder().halo());
-  const double of_row = sizeof(double) * record::history_fields.size() *
-                        static_cast<double>(whole_.own_interface_nodes.back().end);
+  const auto of_row = static_cast<double>(
+      sizeof(double) *
+      record::history_row_values(static_cast<std::size_t>(whole_.own_interface_nodes.back().end),
+                                 stepper_->interface_state().law_states.size()));
   const double bytes = of_update * std::round(step_s() / substep_s()) + of_row;
   const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / bytes));
   std::int64_t taken = 0;
@@ -282,8 +284,10 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
     for (long substep = 0; substep < n_substeps; ++substep) observer.at_update(slips.next());
     if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
       to->time_s.push_back(time_s());
-      for (std::size_t f = 0; f < record::history_fields.size(); ++f) {
-        auto& field = to->*record::history_fields[f].member;
+      to->law_states.resize(stepper_->interface_state().law_states.size());
+      const auto members = members_of(*to);
+      for (std::size_t f = 0; f < report.samples.size(); ++f) {
+        auto& field = *members[1 + f];
         const auto from = report.samples[f].begin() + row * n_nodes;
         field.insert(field.end(), from, from + n_nodes);
       }
@@ -355,9 +359,11 @@ StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_s
   append_own(memory.strength_Pa, 0, report.memory.strength_Pa);
   append_own(memory.onset_ratio, 0, report.memory.onset_ratio);
   append_own(memory.slipping, 0, report.memory.slipping);
+  const auto members = members_of(samples);
+  report.samples.resize(members.size() - 1);
   for (std::size_t f = 0; f < report.samples.size(); ++f)
     for (std::size_t row = 0; row < samples.time_s.size(); ++row)
-      append_own(samples.*record::history_fields[f].member, row, report.samples[f]);
+      append_own(*members[1 + f], row, report.samples[f]);
   return report;
 }
 

@@ -58,8 +58,7 @@ bool ObservedRun::after_step(const SlipRates& rates) {
   if (!row_.time_s.empty()) {
     for (const auto& observer : observers_)
       if (observer->wants_row(before)) observer->take_row(row_);
-    row_.time_s.clear();
-    for (const auto& field : record::history_fields) (row_.*field.member).clear();
+    for (auto* values : members_of(row_)) values->clear();
   }
   bool goes_on = true;
   for (const auto& observer : observers_) goes_on = observer->after_step(now, rates) && goes_on;

@@ -106,10 +106,10 @@ StepReport StepReport::joined(std::vector<MessageBuffer> of_subdomains) {
     for (std::size_t k = 0; k < all.rates.size(); ++k) all.rates[k].add(subdomain.rates[k]);
   all.seen = joined_slips(parts);
   const auto n_rows = first.samples.front().size() / first.memory.t_Pa.size();
-  for (std::size_t f = 0; f < all.samples.size(); ++f)
-    all.samples[f] = joined_rows(
+  for (std::size_t f = 0; f < first.samples.size(); ++f)
+    all.samples.push_back(joined_rows(
         parts, n_rows,
-        [f](const StepReport& subdomain) -> const std::vector<double>& { return subdomain.samples[f]; });
+        [f](const StepReport& subdomain) -> const std::vector<double>& { return subdomain.samples[f]; }));
   all.displacements = joined_rows(
       parts, first.rates.size(),
       [](const StepReport& subdomain) -> const std::vector<double>& { return subdomain.displacements; });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,14 +48,13 @@ struct StepReport {
   SlipFinder::Memory memory;     ///< of the last update
   std::vector<SlipRates> rates;  ///< [steps]
   SlipUpdates seen;
-  std::array<std::vector<double>, record::history_fields.size()> samples;  ///< each [rows x nodes]
-  std::vector<double> displacements;  ///< [steps x displacement_values of their probes]
-  bool is_interrupted = false;        ///< whether the rank is to end the run
+  std::vector<std::vector<double>> samples;  ///< members_of the history but its time, each [rows x nodes]
+  std::vector<double> displacements;         ///< [steps x displacement_values of their probes]
+  bool is_interrupted = false;               ///< whether the rank is to end the run
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(memory, rates, seen, displacements, is_interrupted);
-    for (auto& field : samples) archive(field);
+    archive(memory, rates, seen, samples, displacements, is_interrupted);
   }
   /// Of subdomains side by side, in their order.
   static StepReport joined(std::vector<MessageBuffer> of_subdomains);

@@ -41,6 +41,19 @@ inline Array to_array(std::vector<double> values) {
   return Array(kept->data(), {kept->size()}, owner);
 }
 
+/// A view that cannot be written to, and keeps its owner.
+template <class Owner>
+Array view_of(const std::vector<double>& values, const Owner& owner) {
+  return Array(values.data(), {values.size()}, nb::find(owner));
+}
+/// The same of several.
+template <class Owner>
+nb::typed<nb::list, Array> views_of(const std::vector<std::vector<double>>& all, const Owner& owner) {
+  nb::list views;
+  for (const auto& values : all) views.append(view_of(values, owner));
+  return nb::borrow<nb::typed<nb::list, Array>>(views);
+}
+
 /// Becomes a ValueError.
 inline void require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument(what);

@@ -289,13 +289,7 @@ class Stepper {
   record::Energies energies_at_start_;
 };
 
-/// A view that cannot be written to, and keeps its owner.
-template <class Owner>
-Array view_of(const std::vector<double>& values, const Owner& owner) {
-  return Array(values.data(), {values.size()}, nb::find(owner));
-}
-
-nb::typed<nb::tuple, Array, Array> view_of(const solid::Field& field, const Stepper& owner) {
+nb::typed<nb::tuple, Array, Array> components_of(const solid::Field& field, const Stepper& owner) {
   return nb::borrow<nb::typed<nb::tuple, Array, Array>>(
       nb::make_tuple(view_of(field.x, owner), view_of(field.y, owner)));
 }
@@ -413,12 +407,16 @@ void bind_compose(nb::module_& module) {
                    "to +x")
       .def_prop_ro("p_Pa", of_interface(&interface::Interface::p_Pa),
                    "[interface nodes] contact pressure, positive in compression")
+      .def_prop_ro(
+          "law_states", [](const S& s) { return views_of(s.started().interface_state().law_states, s); },
+          "of the state variables of the friction law, in its order, [interface nodes] each, at time_s")
       .def(
-          "displacement_m", [](const S& s, std::size_t body) { return view_of(s.body(body).u_m(), s); },
+          "displacement_m", [](const S& s, std::size_t body) { return components_of(s.body(body).u_m(), s); },
           "body"_a = 0, "Of all nodes of a body, 0 above or 1 below: arrays u_x and u_y.")
       .def(
           "velocity_m_per_s",
-          [](const S& s, std::size_t body) { return view_of(s.body(body).v_m_per_s(), s); }, "body"_a = 0,
+          [](const S& s, std::size_t body) { return components_of(s.body(body).v_m_per_s(), s); },
+          "body"_a = 0,
           "The same of the velocity half a step before, half a sub-step next to the interface.");
 }
 

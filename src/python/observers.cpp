@@ -65,15 +65,14 @@ void bind_observers(nb::module_& module) {
   const auto add = [&](const record::HistoryColumn& column) {
     const std::string about(column.description);
     state.def_prop_ro(
-        column.name,
-        [member = column.member](const S& of) {
-          const auto& values = of.row.*member;
-          return Array(values.data(), {values.size()}, nb::find(of));
-        },
+        column.name, [member = column.member](const S& of) { return view_of(of.row.*member, of); },
         about.substr(0, about.find(", [")).c_str());
   };
   add(record::history_place);
   for (const auto& field : record::history_fields) add(field);
+  state.def_prop_ro(
+      "law_states", [](const S& of) { return views_of(of.row.law_states, of); },
+      "of the state variables of the friction law, in its order");
 }
 
 }  // namespace slipfront::python

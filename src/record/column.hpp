@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
+#include <vector>
 
 namespace slipfront::record {
 
@@ -15,14 +17,19 @@ struct Column {
   Value Record::*member;
 };
 
-/// Appends the rows of one record to those of another one.
+/// What the rows of a record hold, in the order of the files: its time and the members that columns name.
 template <class Record, class Values, std::size_t n_fields>
-void append_rows(Record& to, const Record& from, const std::array<Column<Record, Values>, n_fields>& fields) {
-  to.time_s.insert(to.time_s.end(), from.time_s.begin(), from.time_s.end());
-  for (const auto& field : fields) {
-    const auto& values = from.*field.member;
-    (to.*field.member).insert((to.*field.member).end(), values.begin(), values.end());
-  }
+auto members_of(Record& record,
+                const std::array<Column<std::remove_const_t<Record>, Values>, n_fields>& fields) {
+  std::vector members = {&record.time_s};
+  for (const auto& field : fields) members.push_back(&(record.*field.member));
+  return members;
+}
+
+/// Appends the rows of one record to those of another one.
+inline void append_rows(const std::vector<std::vector<double>*>& to,
+                        const std::vector<const std::vector<double>*>& from) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k]->insert(to[k]->end(), from[k]->begin(), from[k]->end());
 }
 
 }  // namespace slipfront::record

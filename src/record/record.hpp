@@ -85,6 +85,7 @@ struct History {
   std::vector<double> time_s;  ///< [times], ascending
   std::vector<double> x_m;     ///< [nodes], ascending
   std::vector<double> slip_m, slip_rate_m_per_s, t_Pa, p_Pa;
+  std::vector<std::vector<double>> law_states = {};  ///< matrices, of the friction law's states; none without
 };
 
 using HistoryColumn = Column<History, std::vector<double>>;
@@ -93,7 +94,7 @@ inline constexpr HistoryColumn history_time = {"time_s", "s", "time since the st
                                                &History::time_s};
 inline constexpr HistoryColumn history_place = {"x_m", "m", "position along the interface from the left edge",
                                                 &History::x_m};
-/// The matrices, in the order of the files.
+/// The matrices of every history, in the order of the files.
 inline constexpr std::array<HistoryColumn, 4> history_fields = {{
     {"slip_m", "m", "displacement of the plate along x relative to its base, since the start, [times, nodes]",
      &History::slip_m},
@@ -104,8 +105,15 @@ inline constexpr std::array<HistoryColumn, 4> history_fields = {{
 }};
 
 /// Numbers of a row: the time, and each field at all nodes.
-inline std::size_t history_row_values(std::size_t n_nodes) {
-  return 1 + history_fields.size() * n_nodes;
+inline std::size_t history_row_values(std::size_t n_nodes, std::size_t n_law_states) {
+  return 1 + (history_fields.size() + n_law_states) * n_nodes;
+}
+/// The members that a row has such numbers of, in the order of the files. @tparam OfHistory  perhaps constant
+template <class OfHistory>
+auto members_of(OfHistory& history) {
+  auto members = members_of(history, history_fields);
+  for (auto& values : history.law_states) members.push_back(&values);
+  return members;
 }
 
 /// Tractions before the event, at the nodes of the interface. [nodes]

@@ -37,13 +37,13 @@ ResultStream::ResultStream(std::filesystem::path dir, RunFiles files, const Exte
 }
 
 void ResultStream::sample(const record::History& rows) {
-  append(block_, rows_of(rows, record::history_fields));
+  append(block_, rows_of(members_of(rows)));
   if (block_.size() >= block_values) hand_over();
 }
 
 void ResultStream::probe(const record::ProbeRecord& rows) {
   SLIPFRONT_ASSERT(probes_, "rows of probes in a stream without them");
-  append(probe_block_, rows_of(rows, record::probe_fields));
+  append(probe_block_, rows_of(members_of(rows, record::probe_fields)));
   if (probe_block_.size() >= block_values) hand_over();
 }
 

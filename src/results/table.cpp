@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "record/column.hpp"
 #include "results/rows.hpp"
 
 namespace slipfront::results {
@@ -33,12 +34,15 @@ std::uint64_t Table::head_bytes() const {
   return results::head_bytes(origin, n_places() * (axes.size() * sizeof(double) + longest));
 }
 
-Table history_table(std::span<const double> x_m, const Origin& origin) {
-  return {origin,
-          {{description_of(record::history_place), {x_m.begin(), x_m.end()}}},
-          {},
-          description_of(record::history_time),
-          descriptions_of(record::history_fields)};
+Table history_table(std::span<const double> x_m, const Origin& origin,
+                    std::span<const Description> law_states) {
+  Table table{origin,
+              {{description_of(record::history_place), {x_m.begin(), x_m.end()}}},
+              {},
+              description_of(record::history_time),
+              descriptions_of(record::history_fields)};
+  table.fields.insert(table.fields.end(), law_states.begin(), law_states.end());
+  return table;
 }
 
 Table probe_table(std::span<const record::ProbePlace> places, const Origin& origin) {
@@ -54,6 +58,18 @@ Table probe_table(std::span<const record::ProbePlace> places, const Origin& orig
     table.axes[1].values.push_back(place.y_m);
   }
   return table;
+}
+
+std::vector<double> rows_of(std::span<const std::vector<double>* const> members) {
+  std::vector<double> rows;
+  const auto n_rows = members.front()->size();
+  for (std::size_t row = 0; row < n_rows; ++row)
+    for (const auto* values : members) {
+      const auto n = static_cast<std::ptrdiff_t>(values->size() / n_rows);
+      const auto first = values->begin() + static_cast<std::ptrdiff_t>(row) * n;
+      rows.insert(rows.end(), first, first + n);
+    }
+  return rows;
 }
 
 void finish(const std::filesystem::path& path, const Table& table) {

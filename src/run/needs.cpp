@@ -286,9 +286,9 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   n.memory = memory(config, size, holder, energy_rows);
   n.statics_bytes = statics_bytes_of(config, size, holder);
 
-  n.history_bytes =
-      n.history_rows * number *
-      static_cast<double>(record::history_row_values(static_cast<std::size_t>(size.n_interface)));
+  n.history_bytes = n.history_rows * number *
+                    static_cast<double>(record::history_row_values(static_cast<std::size_t>(size.n_interface),
+                                                                   config.friction.states().size()));
   const double of_stress = output.snapshot_stress ? results::tensor_values_per_cell * number : 0;
   if (n.snapshots > 0)
     n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (in_snapshot + of_stress));

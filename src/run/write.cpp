@@ -201,6 +201,7 @@ Json about(const input::Case& config, const Status& status) {
                {"processor", processor()}, {"host", host_name()},     {"title", config.title},
                {"status", status.name},    {"reason", status.reason}, {"sessions", status.sessions}};
   if (status.name == "running") json["process"] = getpid();
+  for (const auto& state : config.friction.states()) json["law_states"].push_back(state.name);
   return json;
 }
 
@@ -277,8 +278,11 @@ static results::Origin origin_of(const input::Case& config) {
 results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s) {
   const auto origin = origin_of(config);
   const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
+  std::vector<results::Description> law_states;
+  for (const auto& state : config.friction.states())
+    law_states.push_back({state.name, state.unit, state.description});
   results::RunFiles files{
-      results::history_table(initial.common.tractions.x_m, origin),
+      results::history_table(initial.common.tractions.x_m, origin, law_states),
       {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
   if (initial.base) {
     const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));

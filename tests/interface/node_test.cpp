@@ -115,7 +115,7 @@ Interface nodes(std::size_t n, const ContactModel& model) {
 }
 
 TEST(InterfaceFields, AreAllArraysThatNodesHave) {
-  constexpr std::array<LawState, 2> states = {{{"theta", "s"}, {"age", "s"}}};
+  constexpr std::array<LawState, 2> states = {{{"theta_s", "s", ""}, {"age_s", "s", ""}}};
   Interface s(3, states);
   std::set<const void*> arrays;
   for_each_field(s, [&](FieldKind, const auto& values) {

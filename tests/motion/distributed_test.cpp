@@ -226,6 +226,7 @@ void expect_same(const Outcome& one, const Outcome& several, double rounding) {
   EXPECT_EQ(one.history.time_s, several.history.time_s);
   for (const auto& field : record::history_fields)
     EXPECT_EQ(one.history.*field.member, several.history.*field.member) << field.name;
+  EXPECT_EQ(one.history.law_states, several.history.law_states);
   EXPECT_EQ(one.probes.time_s, several.probes.time_s);
   for (const auto& field : record::probe_fields)
     EXPECT_EQ(one.probes.*field.member, several.probes.*field.member) << field.name;

@@ -10,7 +10,7 @@ namespace slipfront::motion {
 namespace {
 
 constexpr std::size_t n_around = 3;
-constexpr int n_reported = 4, n_reported_substeps = 2, sampled_rows = 2;
+constexpr int n_reported = 4, n_reported_substeps = 2, sampled_rows = 2, sampled_fields = 5;
 
 /// Of nodes [first, first + n): each value tells where it belongs.
 StepReport of_nodes(int first, int n, int n_probes) {
@@ -37,6 +37,7 @@ StepReport of_nodes(int first, int n, int n_probes) {
     }
     report.seen.add(seen);
   }
+  report.samples.resize(sampled_fields);
   for (std::size_t f = 0; f < report.samples.size(); ++f)
     for (int row = 0; row < sampled_rows; ++row)
       for (int node = first; node < first + n; ++node)

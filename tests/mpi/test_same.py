@@ -19,9 +19,7 @@ height_m = 0.04
 end_s = 60e-6
 {time}
 [friction]
-law = "velocity_weakening"
-mu_s = 1.3
-mu_k = 0.6
+{law}
 {friction}
 [output]
 snapshot_times_s = [0, 30e-6, 45e-6]
@@ -31,6 +29,7 @@ y_m = [0.0049, 0.0101]
 {rest}
 """
 
+LAW = 'law = "velocity_weakening"\nmu_s = 1.3\nmu_k = 0.6'
 RELIEF = {"plate": 'corner = "relief"'}
 BASE = """
 [base]
@@ -71,6 +70,11 @@ CASES = {
     "predictor-corrector": {"rest": '[contact]\nalgorithm = "predictor_corrector"'},
     "strength relaxed": {"friction": 'regularisation = "strength"\nrelaxation_time_s = 1e-6'},
     "pressure relaxed": {"friction": 'regularisation = "pressure"\nrelaxation_time_s = 1e-6'},
+    "rate and state": {
+        "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
+        "law": 'law = "rate_and_state_aging"\nf0 = 1.1',
+        "rest": NUCLEATION.format(form="overstress", x_m=0.1),
+    },
     "friction along x": {"friction": 'file = "mu.csv"', "files": {"mu.csv": TABLE}},
     "two bodies": {"rest": BASE},
     "absorbing edges": {
@@ -134,7 +138,7 @@ def write_case(folder, name):
     parts = CASES[name]
     for file, text in parts.get("files", {}).items():
         (folder / file).write_text(text, encoding="utf-8")
-    slots = {slot: parts.get(slot, "") for slot in ("plate", "time", "friction", "rest")}
+    slots = {"law": LAW} | dict.fromkeys(("plate", "time", "friction", "rest"), "") | parts
     (folder / "case.toml").write_text(PLATE.format(**slots), encoding="utf-8")
     return folder / "case.toml"
 

@@ -371,7 +371,8 @@ def set_status(folder: Path, status: str, reason: str) -> None:
 def reopen_history(folder: Path) -> None:
     """interface.h5 as it is while the run goes."""
     with h5py.File(folder / "interface.h5") as hdf5:
-        columns = [hdf5[name][()] for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")]
+        states = json.loads((folder / "run.json").read_text()).get("law_states", [])
+        columns = [hdf5[name][()] for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa", *states)]
         rows = np.concatenate([hdf5["time_s"][()][:, None], *columns], axis=1)
     (folder / "interface.h5").write_bytes(OPEN_HEAD + rows.astype("<f8").tobytes())
 

@@ -29,6 +29,7 @@ from common import (
 from package_cases import CASE, program, write_case
 from slipfront.running import flattened, toml_text
 from slipfront.sweep.definition import flattened as values
+from synthetic import interrupt
 
 # What does not depend on when and where a run was done.
 SAME_FILES = ("case.resolved.toml", "interface.h5", "fronts.csv", "energy.csv", "static.csv", "fields.vtkhdf")
@@ -199,6 +200,51 @@ def test_an_error_of_an_observer_keeps_a_checkpoint(tmp_path):
     assert all(a < b for a, b in zip(shown, shown[1:], strict=False))
     slipfront.run(case, output=tmp_path / "plain")
     require_same_bytes(tmp_path / "out", tmp_path / "plain", *SAME_FILES)
+
+
+def test_the_state_of_a_law_is_in_the_history(tmp_path):
+    """At the time of the tractions, which it makes with the mean of the slip rates before and after."""
+    a, V0 = 0.01, 1e-6
+    case = {
+        "plate": {"width_m": 0.1, "height_m": 0.02, "element_size_m": 1e-3}
+        | {"corner": "none", "sides": "absorbing", "top": "absorbing"},
+        "loading": {"method": "prestress"},
+        "prestress": {"t_Pa": 2.65e6, "p_Pa": 5e6},
+        "friction": {"law": "rate_and_state_aging", "a": a, "V0_m_per_s": V0},
+        "event": {"kind": "nucleation"},
+        "nucleation": {"form": "overstress", "overstress_Pa": 1.1e6, "half_length_m": 10e-3},
+        "time": {"end_s": 20e-6, "interface_substeps": 1},
+        "output": {"history_interval_s": 1e-9},  # each step
+    }
+    shown = []
+
+    def look(state):
+        shown.append(state.law_states[0])
+        if len(shown) == 10:
+            raise ZeroDivisionError("of the caller")
+
+    run = slipfront.run(case, output=tmp_path / "out")
+    history = run.history.load()
+    assert history.psi.attrs == {"units": "1", "long_name": "state of the surfaces"}
+    rate = np.abs(history.slip_rate_m_per_s.values)
+    slides = np.minimum(rate[1:], rate[:-1]) > 0.05  # where it is the mean
+    mean = 0.5 * (rate[1:] + rate[:-1])
+    t_Pa = history.p_Pa[1:] * a * np.arcsinh(mean / (2 * V0) * np.exp(history.psi[1:] / a))
+    assert slides.sum() > 500
+    assert np.allclose(t_Pa.values[slides], history.t_Pa.values[1:][slides], rtol=1e-13, atol=0)
+
+    with pytest.raises(ZeroDivisionError):
+        slipfront.run(case, output=tmp_path / "again", observers=[(0, look)])
+    assert np.array_equal(shown, history.psi[:10])
+    resumed = slipfront.resume(tmp_path / "again", threads=2)
+    assert resumed.info["sessions"] == 2
+    require_same_bytes(tmp_path / "out", tmp_path / "again", "interface.h5", "fronts.csv", "energy.csv")
+
+    (tmp_path / "again/checksums.sha256").unlink()
+    interrupt(tmp_path / "again", "running")  # of whose history there are the rows alone
+    growing = slipfront.open(tmp_path / "again")
+    assert growing.status == "running"
+    assert growing.history.equals(history)
 
 
 def test_observers_that_are_none(tmp_path):

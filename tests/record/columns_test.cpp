@@ -101,8 +101,8 @@ TEST(Energies, AreKeptWithAllTheirTerms) {
 }
 
 TEST(History, TheTableNamesEveryMember) {
-  EXPECT_EQ(sizeof(History), (2 + history_fields.size()) * sizeof(std::vector<double>));
-  EXPECT_EQ(history_row_values(10), 1 + 10 * history_fields.size());
+  EXPECT_EQ(sizeof(History), (3 + history_fields.size()) * sizeof(std::vector<double>));
+  EXPECT_EQ(history_row_values(10, 2), 1 + 10 * (history_fields.size() + 2));
 }
 
 TEST(History, RowsAreThoseOfThePage) {

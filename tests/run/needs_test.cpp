@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "cases.hpp"
+#include "interface/friction/rate_and_state.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -56,6 +57,13 @@ TEST(Needs, OfOneAmongManyIsItsPart) {
   EXPECT_LT(of({4, 1, false}), 0.5 * of({}));
   EXPECT_GT(of({4, 1, true}), needs(config, size).statics_bytes);  // which it solves alone
   EXPECT_GT(of({4, 4, true}), of({4, 1, true}));
+}
+
+TEST(Needs, CountTheStateOfAFrictionLaw) {
+  auto config = coarse_case();
+  const double without = needs_of(config).history_bytes;
+  config.friction = interface::RateAndStateSlip {};
+  EXPECT_NEAR(needs_of(config).history_bytes / without, 5.0 / 4, 1e-2);  // but for the times
 }
 
 TEST(Info, OfRanksIsOfTheirSubdomains) {

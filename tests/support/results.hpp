@@ -67,7 +67,7 @@ inline record::History read_history(const std::filesystem::path& file) {
 inline void write_history(const std::filesystem::path& file, const record::History& history) {
   const auto table = results::history_table(history.x_m);
   results::RowFile rows(file, table.head_bytes());
-  rows.write(results::rows_of(history, record::history_fields));
+  rows.write(results::rows_of(members_of(history)));
   rows.sync();
   results::finish(file, table);
 }

@@ -29,7 +29,9 @@ struct ListParameter {
 
 /// A state variable of a law: a number at each node, remembered from one contact update to the next.
 struct LawState {
-  const char *name, *unit;
+  const char* name;  ///< in results; it ends with the unit
+  const char* unit;
+  const char* description;
 };
 
 template <class Law>

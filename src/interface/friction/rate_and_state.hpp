@@ -44,7 +44,7 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
       : evolution == StateEvolution::slip ? "rate and state, slip law; never sticks"
                                           : "rate and state, slip law with strong rate weakening";
   static constexpr SlipMemory memory = SlipMemory::none;
-  static constexpr std::array<LawState, 1> states = {{{"psi", "1"}}};
+  static constexpr std::array<LawState, 1> states = {{{"psi", "1", "state of the surfaces"}}};
 
   double a = 0.008;
   double b = 0.016;

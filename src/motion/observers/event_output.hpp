@@ -28,11 +28,12 @@ struct KeptOutput final : EventOutput {
   record::ProbeRecord probes;
 
   void sample(const record::History& row) override {
-    record::append_rows(history, row, record::history_fields);
+    history.law_states.resize(row.law_states.size());
+    record::append_rows(members_of(history), members_of(row));
   }
   void snapshot(TimeStepper& stepper) override { snapshots.push_back(stepper.snapshot()); }
   void probe(const record::ProbeRecord& rows) override {
-    record::append_rows(probes, rows, record::probe_fields);
+    record::append_rows(members_of(probes, record::probe_fields), members_of(rows, record::probe_fields));
   }
 };
 
