@@ -92,8 +92,9 @@ void write_nodes(const Node<SimdVector, n_law_states>& n, Interface& s, Place at
 }
 
 /// A law of the registry, the same for all nodes or one for each.
-template <class Law>
+template <class Law, bool may_strengthen>
 struct RegistryLaw {
+  static constexpr bool strengthens = may_strengthen;
   static constexpr SlipMemory memory = Law::memory;
   static constexpr std::size_t n_states = n_states_of<Law>;
   const NodeLaws* of_nodes;  ///< null where all have the same
@@ -141,6 +142,7 @@ struct AskedInLanes {
 };
 
 struct LawOverArrays {
+  static constexpr bool strengthens = false;
   static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
   static constexpr std::size_t n_states = 0;
   LawConstants<AskedInLanes, SimdVector> constants;
@@ -158,7 +160,7 @@ template <ContactAlgorithm algorithm, class Law, class Form>
   const auto update_at = [&](auto at) {
     auto nodes = read_nodes<algorithm, remembers, Law::n_states>(s, at);
     law.go_to(at.begin);
-    changed |= update_node<algorithm, Law::memory>(law.constants, form, dt_s, nodes);
+    changed |= update_node<algorithm, Law::memory, Law::strengthens>(law.constants, form, dt_s, nodes);
     write_nodes<algorithm, remembers>(nodes, s, at);
   };
   std::size_t i = 0;
@@ -202,7 +204,7 @@ void start_contact(const ContactModel& model, Interface& s) {
     for (std::size_t i = 0; i < s.size(); ++i) {
       const FrictionLaw& law = model.law_at(i);
       const double mu_s = static_coefficient(law), mu_k = kinetic_coefficient(law);
-      const double mu_0 = weakened(mu_s, mu_s, mu_k, s.intact[i], s.is_forced);
+      const double mu_0 = Weakened<double>(mu_s, mu_k, s.intact[i], s.is_forced)(mu_s);
       s.strength_Pa[i] = mu_0 * s.p_Pa[i] + (s.p_Pa[i] > 0 ? law.cohesion_Pa() : 0);
       const auto memory = form.initial(mu_0, s.p_Pa[i]);
       s.relaxed_Pa[i] = memory.relaxed_Pa;
@@ -229,14 +231,19 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
                  : update_by<ContactAlgorithm::predictor_corrector>(model.law, form, dt_s, state);
     });
   return visit(model.law, [&]<class Law>(const Law& one) {
-    const RegistryLaw<Law> law(model, one);
-    return with_form(model.regularisation, since_last_s, [&](const auto& form) {
-      if constexpr (!HasState<Law>)
-        if (model.algorithm == ContactAlgorithm::predictor_corrector)
-          return update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
-      SLIPFRONT_ASSERT(model.algorithm == ContactAlgorithm::direct, "a state needs the direct algorithm");
-      return update<ContactAlgorithm::direct>(law, form, dt_s, state);
-    });
+    const auto update_by_law = [&](const auto& law) {
+      return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+        if constexpr (!HasState<Law>)
+          if (model.algorithm == ContactAlgorithm::predictor_corrector)
+            return update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
+        SLIPFRONT_ASSERT(model.algorithm == ContactAlgorithm::direct, "a state needs the direct algorithm");
+        return update<ContactAlgorithm::direct>(law, form, dt_s, state);
+      });
+    };
+    if constexpr (requires { one.strengthens(); })
+      if (model.of_nodes.empty() ? one.strengthens() : model.of_nodes.strengthen_somewhere())
+        return update_by_law(RegistryLaw<Law, true>(model, one));
+    return update_by_law(RegistryLaw<Law, false>(model, one));
   });
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/lanes.hpp"
+#include "base/numbers.hpp"
 #include "interface/friction/parameter.hpp"
 #include "interface/interface.hpp"
 #include "interface/regularisation.hpp"
@@ -28,14 +29,22 @@ struct Node {
   bool is_forced = false;
 };
 
-/// The coefficient of a node that may be weakened, see Interface::intact; exactly the law's where intact
-/// is 1.
+/// What is left of the coefficient of a node that may be weakened, see Interface::intact: exactly the law's
+/// where intact is 1.
 template <class V>
-inline V weakened(V mu, V mu_at_rest, V mu_k, V intact, bool is_forced) {
-  if (!is_forced) return mu - (1 - intact) * (mu - mu_k);
-  const V most = mu_k + intact * (mu_at_rest - mu_k);
-  return select(intact < 1 && most < mu, most, mu);
-}
+struct Weakened {
+  V mu_k, intact, most;
+  Weakened(V mu_at_rest, V mu_k_, V intact_, bool is_forced)
+      : mu_k(mu_k_), intact(intact_), most(V{} + infinity) {
+    if (!is_forced) return;
+    most = select(intact < 1, mu_k + intact * (mu_at_rest - mu_k), most);
+    intact = V{} + 1;
+  }
+  V operator()(V mu) const {
+    const V left = mu - (1 - intact) * (mu - mu_k);
+    return select(most < left, most, left);
+  }
+};
 
 /// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
 template <class N, class V>
@@ -68,6 +77,8 @@ inline constexpr int rate_evaluations = 3;
 /// one, and found by Newton's steps.
 template <class Mu, class V>
 struct Strengthening {
+  static constexpr int most_evaluations = 40;
+  static constexpr double rounding = 1e-14;
   const Mu& mu;
   V slip_m, compliance;  ///< what a coefficient takes off the slip rate, p/impedance
   V w;                   ///< share of the rate after the step
@@ -89,16 +100,17 @@ struct Strengthening {
 
 /// Friction of a law by which nodes stick or slip.
 /// @param impedance_x  effective mass along x over tributary length and dt
-template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Mu, class Form, class V>
+/// @tparam strengthens_somewhere  whether the law of any node does
+template <ContactAlgorithm algorithm, SlipMemory slip_memory, bool strengthens_somewhere, class Mu,
+          class Form, class V>
 inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
   const auto& [mu, mu_at_rest, mu_k, cohesion_of_law_Pa, strengthens] = law;
   const V p = n.p_Pa;
   const V cohesion = select(p > 0, cohesion_of_law_Pa, V{});
-  const auto coefficient = [&](V speed, V slip) {
-    return weakened(mu(speed, slip), mu_at_rest, mu_k, n.intact, n.is_forced);
-  };
+  const Weakened<V> weakened(mu_at_rest, mu_k, n.intact, n.is_forced);
+  const auto coefficient = [&](V speed, V slip) { return weakened(mu(speed, slip)); };
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
   const auto step = form.step(absolute(last_rate));
@@ -115,42 +127,42 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
     direction = select(under_way, rate, t_stop);
     along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, trial_traction);
   }
-  constexpr bool may_strengthen = !predicts && requires {
-    mu.slope_s_per_m(rate, rate);
-  };
-  const bool does_strengthen = may_strengthen && any(strengthens > 0);
-  V strength{}, first_strength{}, t{}, v_x{};
+  V strength{}, first_strength{}, t{}, v_x{}, evaluated_at{};
   Mask<V> sticks{};
   Memory<V> now;
-  Mask<V> goes_on = p == p;
-  constexpr int most = 40;
-  for (int k = 0; k < (does_strengthen ? most : n_evaluations); ++k) {
+  const auto evaluate = [&] {
+    evaluated_at = rate;
     const V mu_now = coefficient(absolute(rate), n.slip_m);
     now = form.now(step, n.memory, mu_now, p);
     strength = form.strength(mu_now, p, now) + cohesion;
-    if (k == 0) first_strength = strength;
     sticks = along <= strength;  // not the contrary, so that a motion that is not a number is seen as slip
     t = select(sticks, t_stop, copy_sign(strength, direction));
     v_x = select(sticks, V{}, v_trial - t / impedance_x);
-    V next = 0.5 * (last_rate + v_x);
-    if constexpr (may_strengthen)
-      if (does_strengthen) {
-        // Lanes do not see how many evaluations others take.
-        const Strengthening rises(mu, n.slip_m, p / impedance_x, last_rate, v_trial);
-        const V solved = rises.next(rate, rises.w * v_x + (1 - rises.w) * last_rate, v_trial, sticks);
-        next = select(strengthens > 0, solved, next);
-        goes_on = goes_on && absolute(next - rate) > 1e-14 * absolute(rate);
-        if (k + 1 >= n_evaluations) goes_on = goes_on && strengthens > 0;
-        next = select(goes_on, next, rate);
-      }
-    if (!any(next != rate)) break;  // further evaluations would repeat this one
-    rate = next;
+  };
+  for (int k = 0; k < n_evaluations; ++k) {
+    evaluate();
+    if (k == 0) first_strength = strength;
+    const V mean_rate = 0.5 * (last_rate + v_x);
+    if (!any(mean_rate != rate)) break;  // further evaluations would repeat this one
+    rate = mean_rate;
+  }
+  if constexpr (strengthens_somewhere && !predicts) {
+    const Strengthening rises(mu, n.slip_m, p / impedance_x, last_rate, v_trial);
+    rate = select(strengthens > 0, last_rate, evaluated_at);
+    Mask<V> goes_on = strengthens > 0;  // a lane does not see how many evaluations others take
+    for (int k = 0; k < rises.most_evaluations; ++k) {
+      evaluate();
+      const V next = rises.next(rate, rises.w * v_x + (1 - rises.w) * last_rate, v_trial, sticks);
+      goes_on = goes_on && absolute(next - rate) > rises.rounding * absolute(rate);
+      if (!any(goes_on)) break;
+      rate = select(goes_on, next, rate);
+    }
   }
   const Mask<V> slipping = !sticks && p > 0;
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
-  V mu_stuck = weakened(mu_at_rest, mu_at_rest, mu_k, n.intact, n.is_forced);
+  V mu_stuck = weakened(mu_at_rest);
   if constexpr (slip_memory != SlipMemory::none) mu_stuck = coefficient(V{}, slip);
   const V strength_at_rest = form.strength(mu_stuck, p, now) + cohesion;
 
@@ -171,7 +183,7 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
 /// of second order in dt, unless friction changes so steeply with V that the node would swing about its
 /// balance from step to step. There V is so much nearer to the end of the step that a linear law comes to its
 /// balance in one step; the fewer nodes are so stiff the shorter the step, and the order remains.
-template <ContactAlgorithm algorithm, SlipMemory, class Law, class Form, class V>
+template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Form, class V>
 inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, double dt_s, V impedance_x,
                   Node<V, 1>& n) {
   const auto& law = constants.law;
@@ -219,7 +231,8 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, 
 /// @param law   ConstantsOf the node's law
 /// @param form  one of with_form's
 /// @return whether the node began or ceased to slip.
-template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Law, class Form, class N>
+template <ContactAlgorithm algorithm, SlipMemory slip_memory, bool strengthens_somewhere = false, class Law,
+          class Form, class N>
 inline auto update_node(const Law& law, const Form& form, double dt_s, N& n) {
   const double per_step = 1 / dt_s;
   const auto impedance = n.mass_per_length_kg_m2 * per_step;
@@ -228,7 +241,8 @@ inline auto update_node(const Law& law, const Form& form, double dt_s, N& n) {
   else
     press_direct(n, impedance, per_step);
   const auto slipped = n.slipping;
-  slide<algorithm, slip_memory>(law, form, dt_s, impedance * n.tangential_mass_ratio, n);
+  slide<algorithm, slip_memory, strengthens_somewhere>(law, form, dt_s, impedance * n.tangential_mass_ratio,
+                                                       n);
   return n.slipping != slipped;
 }
 

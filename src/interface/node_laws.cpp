@@ -14,6 +14,7 @@ NodeLaws::NodeLaws(std::vector<FrictionLaw> laws) : laws_(std::move(laws)) {
     const FrictionLaw& law = laws_[std::min(node, laws_.size() - 1)];
     SLIPFRONT_ASSERT(law.name() == laws_.front().name(), "laws of one type along the interface");
     const auto values = visit(law, [&](const auto& l) {
+      strengthen_somewhere_ = strengthen_somewhere_ || strengthens(l);
       const auto folded = values_of<double>(constants_of(law, l));
       return std::vector<double>(folded.begin(), folded.end());
     });

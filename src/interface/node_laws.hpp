@@ -78,6 +78,8 @@ class NodeLaws {
   bool empty() const { return laws_.empty(); }
   std::size_t size() const { return laws_.size(); }
   const FrictionLaw& operator[](std::size_t node) const { return laws_[node]; }
+  /// Whether the coefficient of any rises with the slip rate.
+  bool strengthen_somewhere() const { return strengthen_somewhere_; }
 
   /// The constants of the nodes from lanes * block on, those of the last node in lanes left over.
   template <class Law>
@@ -91,6 +93,7 @@ class NodeLaws {
  private:
   std::vector<FrictionLaw> laws_;  ///< [nodes]
   std::vector<double> constants_;  ///< [blocks x constants x lanes]
+  bool strengthen_somewhere_ = false;
 };
 
 }  // namespace slipfront::interface

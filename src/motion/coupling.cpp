@@ -208,10 +208,11 @@ void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, dou
   }
   const auto& mass = body.side->mass_kg;
   for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * loads_.trigger_force_N_per_m[i] / mass[i];
+  const double growth_t_Pa = prestress_growth_t_Pa_, growth_p_Pa = prestress_growth_p_Pa_;
   for (std::size_t i = 0; i < loads_.prestress_t_Pa.size(); ++i) {
     const double per_pressure = dt_s * tributary_m_[i] / mass[i];
-    v_x[i] += sign * per_pressure * prestress_t_Pa(i);
-    v_y[i] -= per_pressure * prestress_p_Pa(i);
+    v_x[i] += sign * per_pressure * (loads_.prestress_t_Pa[i] + growth_t_Pa);
+    v_y[i] -= per_pressure * (loads_.prestress_p_Pa[i] + growth_p_Pa);
   }
   for (const auto& [i, n, d_x, d_y] : body.side->dashpots) {
     // The contact's tractions act on the effective mass m (1 + d).
@@ -332,9 +333,10 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
   for (std::size_t s = 0; s < sides_.size(); ++s)
     add_dashpots(bodies_[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
   for (std::size_t i = own_begin_; i < std::min(own_end_, loads_.prestress_t_Pa.size()); ++i)
-    works.prestress_work += 0.5 * dt_s * tributary_m_[i] *
-                            (prestress_t_Pa(i) * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
-                             prestress_p_Pa(i) * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
+    works.prestress_work +=
+        0.5 * dt_s * tributary_m_[i] *
+        ((loads_.prestress_t_Pa[i] + prestress_growth_t_Pa_) * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
+         (loads_.prestress_p_Pa[i] + prestress_growth_p_Pa_) * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
   for (const auto i : trigger_nodes_)
     if (is_own(i))
       works.trigger_work +=

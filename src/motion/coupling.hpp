@@ -97,8 +97,6 @@ class Coupling {
   double u_y_m(std::size_t body, std::size_t i) const {
     return bodies_[body].u_m->y[bodies_[body].side->nodes[i]];
   }
-  double prestress_t_Pa(std::size_t i) const { return loads_.prestress_t_Pa[i] + prestress_growth_t_Pa_; }
-  double prestress_p_Pa(std::size_t i) const { return loads_.prestress_p_Pa[i] + prestress_growth_p_Pa_; }
   /// The trial motion of the interface nodes, all forces but the contact's included.
   void gather(double dt_s, double impulse_s);
   void gather_both(double dt_s, double impulse_s);

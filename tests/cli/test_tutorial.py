@@ -15,12 +15,12 @@ pytestmark = pytest.mark.slow
 TUTORIAL = ROOT / "docs/tutorial.md"
 
 CHECK = """\
-#include "interface/friction/slip_exponential.hpp"
+#include "interface/friction/slip_gradual.hpp"
 #include <cmath>
 int main() {
-  const slipfront::interface::SlipExponential law;
+  const slipfront::interface::SlipGradual law;
   const auto mu = law.evaluator();
-  const bool right = mu(0., 0.) == law.mu_s && std::abs(mu(1., 4e-6) - (0.3 + 0.3 * std::exp(-1))) < 1e-15;
+  const bool right = mu(0., 0.) == law.mu_s && std::abs(mu(1., 2e-6) - 0.375) < 1e-15;
   return right ? 0 : 1;
 }
 """

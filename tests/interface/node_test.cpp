@@ -81,7 +81,10 @@ bool update_one_by_one(const FrictionLaw& of, const Law& law, const Form& form, 
       for (std::size_t k = 0; k < n.law_states.size(); ++k) f(n.law_states[k], s.law_states[k]);
     };
     for_each_entry([i](auto& entry, const auto& values) { entry = values[i]; });
-    changed = update_node<algorithm, Law::memory>(constants, form, dt, n) || changed;
+    changed = update_node < algorithm, Law::memory, requires {
+      law.strengthens();
+    }
+    > (constants, form, dt, n) || changed;
     for_each_entry([i](const auto& entry, auto& values) { values[i] = entry; });
   }
   return changed;
