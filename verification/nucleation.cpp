@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "interface/friction/rate_and_state.hpp"
+#include "verification/loaded_plane.hpp"
+#include "verification/problems.hpp"
+
+namespace slipfront::verification::nucleation {
+
+namespace {
+
+constexpr double pressure_Pa = 5e7, b = 0.016, a = 0.2 * b, f0 = 0.6;
+constexpr double L_b_m = 0.01;
+constexpr double half_length = 1.3774;  ///< of the slip that runs away, over L_b
+constexpr double slowing = 0.3781;      ///< a/b d_c d(1/V)/dt, less than 0
+constexpr double ln_V_theta_over_d_c = 7;
+
+/// Of the shape of V, which is 1 in the middle: V - (L_b/2)|k| V is `slowing` for |x| < half_length.
+constexpr std::array shape = {0.68124, -0.28245, 0.03485, -0.00137};
+double V_shape(double x_over_L_b) {
+  if (std::abs(x_over_L_b) >= half_length) return 0;
+  const double angle = std::acos(x_over_L_b / half_length);
+  double V = 0;
+  for (std::size_t n = 0; n < shape.size(); ++n)
+    V += shape[n] * std::sin(static_cast<double>(2 * n + 1) * angle);
+  return V;
+}
+constexpr double mean_V = 0.25 * std::numbers::pi * shape[0];  ///< over the length
+
+/// Coefficients less f0, by x/L_b: of the load, and of sliding at V_i.
+struct Begin {
+  std::function<double(double)> load, at_V_i;
+};
+/// Slip that has the shape of the one that runs away.
+Begin in_shape() {
+  const double load = b * ln_V_theta_over_d_c;
+  return {[=](double) { return load; },
+          [=](double x) { return load - a * std::log(std::max(V_shape(x), 1e-4)); }};
+}
+/// A bump of the load and of the state.
+Begin bump(double width) {
+  const auto f = [=](double x) { return b * std::max(-2.0, ln_V_theta_over_d_c - x * x / (width * width)); };
+  return {f, f};
+}
+
+/// What slip does while it grows, over its largest rate in units of d_c c_S/L_b.
+struct Growth {
+  Curve length, slowing;
+};
+Growth growth(const std::string& label, const Begin& begin, double V_i, int elements, double width) {
+  const double c_S = solid::shear_speed_m_per_s(undamped);
+  interface::RateAndStateAging law;
+  law.a = a, law.b = b, law.f0 = f0;
+  law.d_c_m = L_b_m * b * pressure_Pa / (2 * sliding_stiffness_Pa());
+  const double V_unit = law.d_c_m * c_S / L_b_m;
+  law.V0_m_per_s = law.V_i_m_per_s = V_i * V_unit;
+  const auto t_Pa = [](const std::function<double(double)>& f) {
+    return [&f](double x_m) { return pressure_Pa * (f0 + f(x_m / L_b_m)); };
+  };
+  LoadedBody body({.width_m = width * L_b_m,
+                   .height_m = 0.5 * width * L_b_m,
+                   .h_m = L_b_m / elements,
+                   .pressure_Pa = pressure_Pa,
+                   .law = law,
+                   .t_at_V_i_Pa = t_Pa(begin.at_V_i)});
+  body.load(t_Pa(begin.load));
+  Growth growth{{label}, {label}};
+  double last_V = 0, last_s = 0, next_V = V_i * V_unit;
+  while (next_V < 0.1 * V_unit) {
+    body.advance();
+    const auto& V = body.interface_state().slip_rate_m_per_s;
+    const double largest = std::ranges::max(V);
+    if (largest < next_V) continue;
+    double sum = 0;
+    for (const double v : V) sum += v / elements;
+    if (last_V > 0) {
+      growth.length.add(largest / V_unit, sum / largest / (2 * mean_V));
+      growth.slowing.add(largest / V_unit,
+                         a / b * law.d_c_m * (1 / last_V - 1 / largest) / (body.time_s() - last_s));
+    }
+    last_V = largest, last_s = body.time_s(), next_V = 1.3 * largest;
+  }
+  return growth;
+}
+
+}  // namespace
+
+Outcome verify(Effort effort) {
+  const bool full = effort == Effort::full;
+  Outcome outcome;
+  std::vector<Growth> found;
+  const int elements = full ? 20 : 10;
+  const double width = full ? 32 : 16;
+  found.push_back(growth("in its shape", in_shape(), 1e-3, elements, width));
+  constexpr double V = 0.01;
+  const double inertia = slowing * b / a * V * half_length;
+  const double tolerance = 1.0 / (elements * elements) + std::pow(half_length / width, 2) + inertia * inertia;
+  const char* reason =
+      "squares of h/L_b, of the half-length over the body's width and over the way of a shear wave in an "
+      "e-fold";
+  outcome.check("half-length over L_b", found[0].length.value_at(V), half_length, tolerance * half_length,
+                reason);
+  outcome.check("-(a/b) d_c d(1/V)/dt", found[0].slowing.value_at(V), slowing, tolerance * slowing, reason);
+  if (full) {
+    found.push_back(growth("narrower", bump(0.3), 1e-4, 10, 16));
+    found.push_back(growth("wider", bump(0.5), 1e-4, 10, 16));
+  }
+  Chart length{.x_label = "V / (d_c c_S / L_b)", .y_label = "half-length / L_b", .log_x = true};
+  Chart rate{.x_label = length.x_label, .y_label = "-(a/b) d_c d(1/V)/dt", .log_x = true};
+  length.curves.push_back({"theory", Curve::Kind::theory, {1e-4, 0.1}, {half_length, half_length}});
+  rate.curves.push_back({"theory", Curve::Kind::theory, {1e-4, 0.1}, {slowing, slowing}});
+  for (auto& g : found) {
+    length.curves.push_back(std::move(g.length));
+    rate.curves.push_back(std::move(g.slowing));
+  }
+  outcome.charts = {std::move(length), std::move(rate)};
+  return outcome;
+}
+
+}  // namespace slipfront::verification::nucleation
