@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +11,9 @@
 #include <vector>
 
 #include "interface/friction/rate_and_state.hpp"
+#include "interface/friction/slip_weakening.hpp"
 #include "verification/loaded_plane.hpp"
+#include "verification/orders.hpp"
 #include "verification/problems.hpp"
 
 namespace slipfront::verification::nucleation {
@@ -91,6 +94,68 @@ Growth growth(const std::string& label, const Begin& begin, double V_i, int elem
   return growth;
 }
 
+constexpr double zone_half_length_m = 0.01;
+
+/// Growth rate, in c_S per half-length, of slip in a zone between barriers, so many times as long as the
+/// critical one, under linear slip weakening.
+double zone_growth(double length, int elements) {
+  constexpr double mu_s = 0.6, mu_k = 0.1;
+  // Uenishi and Rice (2003): the critical half-length is 0.5789 mu* d_c/(strength drop).
+  const double d_c_m =
+      zone_half_length_m / length * (mu_s - mu_k) * pressure_Pa / (0.57889 * 2 * sliding_stiffness_Pa());
+  const double h_m = zone_half_length_m / elements;
+  LoadedBody body({.width_m = 16 * zone_half_length_m,
+                   .height_m = 8 * zone_half_length_m,
+                   .h_m = h_m,
+                   .pressure_Pa = pressure_Pa,
+                   .law = interface::SlipWeakening{mu_s, mu_k, d_c_m}});
+  constexpr double overload = 1e-9;
+  body.load([&](double x_m) {
+    return pressure_Pa *
+           (std::abs(x_m) < zone_half_length_m - 0.1 * h_m ? mu_s * (1 + overload) : 0.5 * mu_s);
+  });
+  const double unit_s = zone_half_length_m / solid::shear_speed_m_per_s(undamped);
+  const auto log_V_at = [&](double time_s) {
+    while (body.time_s() < time_s) body.advance();
+    return std::log(std::ranges::max(body.interface_state().slip_rate_m_per_s));
+  };
+  const double before = log_V_at(9 * unit_s), from_s = body.time_s();
+  return (log_V_at(15 * unit_s) - before) / (body.time_s() - from_s) * unit_s;
+}
+
+/// The length that does not grow, from rates s of longer ones: for small s what the motion outside the zone
+/// takes goes with s^2 (ln(1/s) + a constant), in two dimensions.
+double critical_length(const std::array<double, 3>& lengths, const std::array<double, 3>& s) {
+  Eigen::Matrix3d terms;
+  for (int j = 0; j < 3; ++j) terms.row(j) << 1, -s[j] * s[j] * std::log(s[j]), s[j] * s[j];
+  return terms.partialPivLu().solve(Eigen::Vector3d(lengths.data()))[0];
+}
+
+/// The zone ends between the last node that slips and the next one: an error of first order in h.
+Chart check_slip_weakening(Outcome& outcome) {
+  constexpr std::array lengths = {1.05, 1.1, 1.15, 1.2};
+  Chart chart{.x_label = "length of the zone / critical length",
+              .y_label = "growth rate / (c_S / half-length)"};
+  std::array<double, 3> nearer, farther;
+  for (int k = 0; k < 3; ++k) {
+    const int elements = 10 << k;
+    Curve rates{fmt::format("slip weakening, a/h = {}", elements)};
+    for (const double length : lengths) rates.add(length, zone_growth(length, elements));
+    const auto& s = rates.y;
+    nearer[k] = critical_length({lengths[0], lengths[1], lengths[2]}, {s[0], s[1], s[2]});
+    farther[k] = critical_length({lengths[1], lengths[2], lengths[3]}, {s[1], s[2], s[3]});
+    rates.add(nearer[k], 0);
+    chart.curves.push_back(std::move(rates));
+  }
+  const auto near = limit(nearer[0], nearer[1], nearer[2], 1, 2),
+             far = limit(farther[0], farther[1], farther[2], 1, 2);
+  outcome.check(
+      "length of a zone that does not grow under slip weakening, over 1.1578 mu* d_c/(strength drop)",
+      near.value, 1, near.uncertainty + std::abs(far.value - near.value),
+      "changes when the finest mesh joins the extrapolation, and when the shortest zone does");
+  return chart;
+}
+
 }  // namespace
 
 Outcome verify(Effort effort) {
@@ -122,6 +187,7 @@ Outcome verify(Effort effort) {
     rate.curves.push_back(std::move(g.slowing));
   }
   outcome.charts = {std::move(length), std::move(rate)};
+  if (full) outcome.charts.push_back(check_slip_weakening(outcome));
   return outcome;
 }
 
