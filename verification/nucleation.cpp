@@ -23,10 +23,11 @@ namespace {
 constexpr double pressure_Pa = 5e7, b = 0.016, a = 0.2 * b, f0 = 0.6;
 constexpr double L_b_m = 0.01;
 constexpr double half_length = 1.3774;  ///< of the slip that runs away, over L_b
-constexpr double slowing = 0.3781;      ///< a/b d_c d(1/V)/dt, less than 0
+constexpr double rise = 0.3781;         ///< -(a/b) d_c d(1/V)/dt
 constexpr double ln_V_theta_over_d_c = 7;
 
-/// Of the shape of V, which is 1 in the middle: V - (L_b/2)|k| V is `slowing` for |x| < half_length.
+/// Of the shape of V, 1 in the middle: the sum of these times sin(angle), sin(3 angle), ..., cos(angle) =
+/// x/half-length, with which V - (L_b/2)|k| V is `rise` where V is not 0.
 constexpr std::array shape = {0.68124, -0.28245, 0.03485, -0.00137};
 double V_shape(double x_over_L_b) {
   if (std::abs(x_over_L_b) >= half_length) return 0;
@@ -56,7 +57,7 @@ Begin bump(double width) {
 
 /// What slip does while it grows, over its largest rate in units of d_c c_S/L_b.
 struct Growth {
-  Curve length, slowing;
+  Curve length, rise;
 };
 Growth growth(const std::string& label, const Begin& begin, double V_i, int elements, double width) {
   const double c_S = solid::shear_speed_m_per_s(undamped);
@@ -86,8 +87,8 @@ Growth growth(const std::string& label, const Begin& begin, double V_i, int elem
     for (const double v : V) sum += v / elements;
     if (last_V > 0) {
       growth.length.add(largest / V_unit, sum / largest / (2 * mean_V));
-      growth.slowing.add(largest / V_unit,
-                         a / b * law.d_c_m * (1 / last_V - 1 / largest) / (body.time_s() - last_s));
+      growth.rise.add(largest / V_unit,
+                      a / b * law.d_c_m * (1 / last_V - 1 / largest) / (body.time_s() - last_s));
     }
     last_V = largest, last_s = body.time_s(), next_V = 1.3 * largest;
   }
@@ -166,14 +167,14 @@ Outcome verify(Effort effort) {
   const double width = full ? 32 : 16;
   found.push_back(growth("in its shape", in_shape(), 1e-3, elements, width));
   constexpr double V = 0.01;
-  const double inertia = slowing * b / a * V * half_length;
+  const double inertia = rise * b / a * V * half_length;
   const double tolerance = 1.0 / (elements * elements) + std::pow(half_length / width, 2) + inertia * inertia;
   const char* reason =
       "squares of h/L_b, of the half-length over the body's width and over the way of a shear wave in an "
       "e-fold";
   outcome.check("half-length over L_b", found[0].length.value_at(V), half_length, tolerance * half_length,
                 reason);
-  outcome.check("-(a/b) d_c d(1/V)/dt", found[0].slowing.value_at(V), slowing, tolerance * slowing, reason);
+  outcome.check("-(a/b) d_c d(1/V)/dt", found[0].rise.value_at(V), rise, tolerance * rise, reason);
   if (full) {
     found.push_back(growth("narrower", bump(0.3), 1e-4, 10, 16));
     found.push_back(growth("wider", bump(0.5), 1e-4, 10, 16));
@@ -181,10 +182,10 @@ Outcome verify(Effort effort) {
   Chart length{.x_label = "V / (d_c c_S / L_b)", .y_label = "half-length / L_b", .log_x = true};
   Chart rate{.x_label = length.x_label, .y_label = "-(a/b) d_c d(1/V)/dt", .log_x = true};
   length.curves.push_back({"theory", Curve::Kind::theory, {1e-4, 0.1}, {half_length, half_length}});
-  rate.curves.push_back({"theory", Curve::Kind::theory, {1e-4, 0.1}, {slowing, slowing}});
+  rate.curves.push_back({"theory", Curve::Kind::theory, {1e-4, 0.1}, {rise, rise}});
   for (auto& g : found) {
     length.curves.push_back(std::move(g.length));
-    rate.curves.push_back(std::move(g.slowing));
+    rate.curves.push_back(std::move(g.rise));
   }
   outcome.charts = {std::move(length), std::move(rate)};
   if (full) outcome.charts.push_back(check_slip_weakening(outcome));
