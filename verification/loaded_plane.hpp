@@ -4,18 +4,20 @@
 #include <functional>
 #include <vector>
 
-#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction.hpp"
 #include "verification/body.hpp"
 
 namespace slipfront::verification {
 
-/// A body at rest on the plane under uniform pressure, with edges that let waves out. Its friction weakens
-/// with slip and does not see changes of pressure: strength mu(slip) p, p the pressure at the start.
+/// A body at rest on the plane under uniform pressure, with edges that let waves out. Its friction does not
+/// see changes of pressure: strength mu p, p the pressure at the start.
 struct LoadedPlane {
   double width_m = 0, height_m = 0, h_m = 0;
   double pressure_Pa = 0;
-  interface::SlipWeakening law;
-  std::function<double(double x_m)> intact;  ///< see interface::Interface; none: 1 everywhere
+  interface::FrictionLaw law;
+  std::function<double(double x_m)> intact = {};  ///< see interface::Interface; none: 1 everywhere
+  /// Traction under which nodes slide at V_i, of a law with a state.
+  std::function<double(double x_m)> t_at_V_i_Pa = {};
 };
 
 /// Its mesh, and a stepper that starts from rest. A place x is counted from the middle of the interface.

@@ -33,6 +33,7 @@ namespace spring_slider { Outcome verify(Effort effort); }
 namespace velocity_steps { Outcome verify(Effort effort); }
 namespace recontact { Outcome verify(Effort effort); }
 namespace stiff_base { Outcome verify(Effort effort); }
+namespace nucleation { Outcome verify(Effort effort); }
 namespace bonded_waves { Outcome verify(Effort effort); }
 // clang-format on
 

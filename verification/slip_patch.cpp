@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "verification/loaded_plane.hpp"
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
@@ -31,7 +32,7 @@ Patch slip(double a_over_h, double width_over_a) {
                    .height_m = 0.5 * width_over_a * a_m,
                    .h_m = a_m / a_over_h,
                    .pressure_Pa = p_Pa,
-                   .law = {.mu_s = 100, .mu_k = 0, .d_c_m = 1e3},
+                   .law = interface::SlipWeakening{.mu_s = 100, .mu_k = 0, .d_c_m = 1e3},
                    // The nodes at +-a are the first that stick.
                    .intact = [](double x) { return std::abs(x) < a_m * (1 - 1e-6) ? 0.0 : 1.0; }});
   const double rise_s = 40 * a_m / c_S;

@@ -56,6 +56,7 @@ std::span<const Verification> verifications() {
                    velocity_steps::verify},
       Verification{"recontact", "A sliding node that leaves the plane and lands", recontact::verify},
       Verification{"stiff_base", "The rigid plane as the limit of stiff bases", stiff_base::verify},
+      Verification{"nucleation", "Lengths at which slip runs away", nucleation::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;
