@@ -313,6 +313,7 @@ def find_fronts_in_history(
     tractions: Arrays | None = None,
     *,
     threshold_m_per_s: float = 1e-3,
+    tip: str = "slip_rate",
     settings: FrontSettings | None = None,
 ) -> xr.Dataset:
     """Fronts in a history of an interface, with the tractions at their tips.
@@ -321,11 +322,16 @@ def find_fronts_in_history(
     is one.
     tractions: t_s_Pa and p_s_Pa [nodes] before the event; by default those of the first time.
     threshold_m_per_s: a node slips while its slip rate is above it.
+    tip: "slip_rate" where this passes the threshold, or, for nodes that never stick, "peak": where |t_Pa| is
+    largest from the stop before up to the largest slip rate before the next stop, at the top of the parabola
+    through three times.
 
     Returns a Dataset as find_fronts does. Onsets are as fine as the history is in time: those of
     OpenRun.fronts, located inside the time steps, are finer."""
     arrays = history_arrays(history)
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
+    if tip not in ("slip_rate", "peak"):
+        raise CaseError(f"tip is {tip!r}; it must be 'slip_rate' or 'peak'")
     if tractions is not None:
         t_s, p_s = tractions_at(arrays[1], tractions)
     elif len(arrays[3]) and len(arrays[4]):
@@ -334,7 +340,8 @@ def find_fronts_in_history(
         raise CaseError("history holds no times")
     options = options_of(settings)
     with refusing():
-        return as_dataset(_core.find_fronts_in_history(*arrays, t_s, p_s, threshold, options))
+        found = _core.find_fronts_in_history(*arrays, t_s, p_s, threshold, tip == "peak", options)
+        return as_dataset(found)
 
 
 def criteria(fronts: Arrays) -> xr.Dataset:

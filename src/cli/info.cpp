@@ -136,6 +136,7 @@ void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
   if (rupture.tip_slip_rate_m_per_s) {
     list.add("a front's tip",
              fmt::format("where the slip rate passes {:.3g} m/s", *rupture.tip_slip_rate_m_per_s));
+    list.add("steady sliding", rupture.steady_sliding);
   } else if (rupture.nominal) {
     list.add("lengths below",
              "at t = mu_s p under the nominal pressure; `run` gives S and what follows from it");

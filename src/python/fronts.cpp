@@ -122,11 +122,12 @@ std::vector<Front> find_fronts(const Values& x_m, const Values& onset_s, const V
 std::vector<Front> find_fronts_in_history(const Values& time_s, const Values& x_m,
                                           const Rows& slip_rate_m_per_s, const Rows& t_Pa, const Rows& p_Pa,
                                           const Values& t_s_Pa, const Values& p_s_Pa,
-                                          double threshold_m_per_s, FrontOptions options) {
+                                          double threshold_m_per_s, bool tip_at_peak, FrontOptions options) {
   options.pause = interruptible;
   const auto state = to_state(x_m, t_s_Pa, p_s_Pa);
   const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
-  const auto record = to_record(history, threshold_m_per_s, options.l_star_m);
+  const auto record = to_record(history, threshold_m_per_s, options.l_star_m,
+                                tip_at_peak ? fronts::TipAt::peak : fronts::TipAt::slip_rate);
   return fronts::find_fronts(record, state, options);
 }
 
@@ -147,7 +148,7 @@ void bind_fronts(nb::module_& module) {
   module.def("find_fronts", &find_fronts, "x_m"_a, "onset_s"_a, "t_s_Pa"_a, "p_s_Pa"_a, "end_time_s"_a,
              "resolution_s"_a, "options"_a, "Fronts in first onsets at x_m [nodes], infinite where none is.");
   module.def("find_fronts_in_history", &find_fronts_in_history, "time_s"_a, "x_m"_a, "slip_rate_m_per_s"_a,
-             "t_Pa"_a, "p_Pa"_a, "t_s_Pa"_a, "p_s_Pa"_a, "threshold_m_per_s"_a, "options"_a,
+             "t_Pa"_a, "p_Pa"_a, "t_s_Pa"_a, "p_s_Pa"_a, "threshold_m_per_s"_a, "tip_at_peak"_a, "options"_a,
              "Fronts in a history of the interface, matrices [times, nodes].");
   module.def("energy_density_J_per_m3", &energy_density, "t_Pa"_a, "p_Pa"_a, "youngs_modulus_Pa"_a,
              "poissons_ratio"_a, "plane_strain"_a, "Kammer et al. 2012, Eq. 2.");

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "base/numbers.hpp"
-#include "fronts/from_history.hpp"
 
 namespace slipfront::python {
 namespace {
@@ -51,9 +50,10 @@ record::History to_history(const Values& time_s, const Values& x_m, const Rows& 
           to_vector(t_Pa),   to_vector(p_Pa)};
 }
 
-record::SlipRecord to_record(const record::History& history, double threshold_m_per_s, double l_star_m) {
+record::SlipRecord to_record(const record::History& history, double threshold_m_per_s, double l_star_m,
+                             fronts::TipAt tip) {
   require(threshold_m_per_s > 0, "threshold_m_per_s must be above 0");
-  return fronts::record_from_history(history, threshold_m_per_s, halo_of(history.x_m, l_star_m));
+  return fronts::record_from_history(history, threshold_m_per_s, halo_of(history.x_m, l_star_m), tip);
 }
 
 }  // namespace slipfront::python

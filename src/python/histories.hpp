@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "fronts/from_history.hpp"
 #include "python/arrays.hpp"
 #include "record/record.hpp"
 
@@ -14,6 +15,7 @@ record::History to_history(const Values& time_s, const Values& x_m, const Rows& 
                            const Rows& t_Pa, const Rows& p_Pa);
 
 /// Its beginnings of slip, with the tractions around that measures over l* need.
-record::SlipRecord to_record(const record::History& history, double threshold_m_per_s, double l_star_m);
+record::SlipRecord to_record(const record::History& history, double threshold_m_per_s, double l_star_m,
+                             fronts::TipAt tip = fronts::TipAt::slip_rate);
 
 }  // namespace slipfront::python

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
@@ -163,13 +164,49 @@ void add_cautions(const input::Case& config, RuptureOutlook& o) {
                                : "a smaller stiffness_damping_s"));
 }
 
-RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed) {
+/// Where friction weakens with the rate of steady sliding, in words. @param x_m  of the interface nodes
+std::string weakening_along_x(const input::Case& config, const std::vector<double>& x_m,
+                              double speed_m_per_s) {
+  const auto laws = input::friction_at(config, x_m);
+  std::size_t n_weakening = 0;
+  std::vector<std::pair<double, double>> stretches_m;
+  bool goes_on = false;
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    const auto state = *interface::state_response(laws.empty() ? config.friction : laws[k], speed_m_per_s);
+    constexpr double rounding = 1e-9;
+    const bool weakens = state.b > (1 + rounding) * state.a;
+    if (weakens && !goes_on) stretches_m.emplace_back(x_m[k], x_m[k]);
+    if (weakens) stretches_m.back().second = x_m[k];
+    n_weakening += weakens ? 1 : 0;
+    goes_on = weakens;
+  }
+  if (n_weakening == 0) return "velocity strengthening (a >= b) everywhere";
+  if (n_weakening == x_m.size()) return "velocity weakening (b > a) everywhere";
+  constexpr std::size_t few = 4;
+  std::string where;
+  for (const auto& [from_m, to_m] : stretches_m)
+    where += fmt::format("{}{:.4g} .. {:.4g}", where.empty() ? "over " : ", ", from_m, to_m);
+  where += " m";
+  if (stretches_m.size() > few) where = fmt::format("at {} of {} nodes", n_weakening, x_m.size());
+  return fmt::format("velocity weakening (b > a) {}, strengthening elsewhere", where);
+}
+
+/// The same at the slip rate before the event and at 1 m/s, which differ under strong weakening.
+std::string steady_sliding(const input::Case& config, const std::vector<double>& x_m) {
+  if (!config.friction.has_state()) return {};
+  const auto slow = weakening_along_x(config, x_m, 0), fast = weakening_along_x(config, x_m, 1);
+  return slow == fast ? slow : fmt::format("{}; at 1 m/s {}", slow, fast);
+}
+
+RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed,
+                          const std::vector<double>& x_m) {
   std::vector<stability::NodeBefore> nodes;
   for (const auto& p : placed) nodes.push_back(p.node);
   RuptureOutlook o;
   o.of_nodes = stability::outlook(bodies_of(config), nodes);
   o.trigger_length_m = trigger_length_m(config);
   if (config.friction.has_state()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
+  o.steady_sliding = steady_sliding(config, x_m);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
   if (const auto half_m = o.of_nodes.supershear_half_length_m;
@@ -192,7 +229,7 @@ void add_doubts(const input::Case& config, const std::vector<Placed>& placed, Ru
 RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
                                std::span<const double> tributary_m) {
   const auto placed = nodes_inside(config, before);
-  auto o = outlook_of(config, placed);
+  auto o = outlook_of(config, placed, before.tractions.x_m);
   add_doubts(config, placed, o);
   if (auto caution = caution_of_trigger(config, before, tributary_m); !caution.empty())
     o.cautions.push_back(std::move(caution));
@@ -206,7 +243,8 @@ RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) 
                            mesh::tributary_lengths_m(meshes.plate));
   const double p_Pa = input::nominal_pressure_Pa(config);
   const double strength_Pa = interface::static_strength_Pa(config.friction, p_Pa);
-  auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});
+  auto o =
+      outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}}, interface_x_m(meshes.plate));
   o.nominal = true;
   // S, and what follows from it, take the tractions along the interface.
   o.of_nodes.S = o.of_nodes.drop_ratio = {nan, nan, nan};

@@ -22,6 +22,8 @@ struct RuptureOutlook {
   std::optional<double> process_zone_elements;
   /// Beyond it a node counts as slipping, under a law that never sticks.
   std::optional<double> tip_slip_rate_m_per_s;
+  /// Of such a law, in words: where friction weakens with the slip rate. Else empty.
+  std::string steady_sliding;
   std::vector<std::string> doubts;    ///< why nothing may rupture, a line each
   std::vector<std::string> cautions;  ///< what mesh and damping decide of it, a line each
 };

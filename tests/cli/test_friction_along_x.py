@@ -2,6 +2,7 @@
 """Friction that varies along the interface, by a table and at random, and laws that are tables of slip."""
 
 import csv
+import re
 
 import h5py
 import numpy as np
@@ -56,6 +57,40 @@ def test_a_barrier_from_a_table(program, case, tmp_path):
     assert max(reached) == pytest.approx(0.069)
     require_done(program("run", "out/case.resolved.toml", "-o", "again", "-q"))
     require_same_bytes(tmp_path / "out", tmp_path / "again", *RESULTS)
+
+
+def steady_sliding(program, case, tmp_path, table, *settings):
+    (tmp_path / "friction.csv").write_text(table)
+    said = require_done(program("info", case, *sets(*settings))).stdout
+    return re.search(r"^ *steady sliding +(.*)$", said, re.MULTILINE)[1]
+
+
+def test_info_tells_where_friction_weakens_with_the_slip_rate(program, write_case, tmp_path):
+    case = write_case(
+        CASE.replace("slip_weakening", "rate_and_state_aging").replace(
+            "[nucleation]", '[nucleation]\nform = "overstress"'
+        )
+    )
+    said = [
+        steady_sliding(program, case, tmp_path, "x_m,b\n" + rows)
+        for rows in (
+            "0,0.016\n0.1,0.016\n",
+            "0,4e-3\n0.1,8e-3\n",
+            "0,4e-3\n0.03,0.016\n0.0705,4e-3\n0.1,4e-3\n",
+        )
+    ]
+    assert said == [
+        "velocity weakening (b > a) everywhere",
+        "velocity strengthening (a >= b) everywhere",
+        "velocity weakening (b > a) over 0.03 .. 0.07 m, strengthening elsewhere",
+    ]
+    flickering = "".join(f"{k / 100},{'0.016' if k % 2 else '4e-3'}\n" for k in range(11))
+    assert "at 50 of 101 nodes" in steady_sliding(program, case, tmp_path, "x_m,b\n" + flickering)
+    strong = 'friction.law="rate_and_state_strong"'
+    said = steady_sliding(program, case, tmp_path, "x_m,b\n0,4e-3\n0.1,4e-3\n", strong)
+    assert (
+        said == "velocity strengthening (a >= b) everywhere; at 1 m/s velocity weakening (b > a) everywhere"
+    )
 
 
 def test_any_number_of_threads_gives_the_same_bytes(program, case, tmp_path):

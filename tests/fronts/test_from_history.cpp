@@ -102,6 +102,28 @@ TEST(RecordFromHistory, OfANode) {
   EXPECT_TRUE(record_from_history({}, 0.5, 3).onsets.empty());
 }
 
+TEST(RecordFromHistory, ATipAtThePeakOfTraction) {
+  // |t| = 9 - (time - 2.3)^2 up to 4 s, a parabola, and higher after the largest slip rate, at 5 s; a second
+  // slip of which t falls from the first row on.
+  auto history = one_node({0, 0, 0.1, 0.9, 1.5, 2, 1, 0, 0, 1, 2});
+  for (std::size_t k = 0; k < 6; ++k) history.t_Pa[k] = std::pow(static_cast<double>(k) - 2.3, 2) - 9;
+  for (std::size_t k = 6; k < 11; ++k) history.t_Pa[k] = 40.0 - static_cast<double>(k);
+  history.p_Pa = history.time_s;
+  const auto record = record_from_history(history, 0.5, 0, TipAt::peak);
+  ASSERT_EQ(record.onsets.size(), 2);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 2.3);
+  EXPECT_DOUBLE_EQ(record.around[0].p_Pa, 2.3);
+  EXPECT_DOUBLE_EQ(record.onsets[1].time_s, 7);  // not 6, before the stop
+  EXPECT_EQ(record.stops.size(), 1);
+}
+
+TEST(RecordFromHistory, ATipAtThePeakOfUnevenRows) {
+  auto history = one_node({0, 0, 1, 0});
+  history.time_s = {0, 1, 4, 5};
+  for (std::size_t k = 0; k < 4; ++k) history.t_Pa[k] = 9 - std::pow(history.time_s[k] - 1.9, 2);
+  EXPECT_DOUBLE_EQ(record_from_history(history, 0.5, 0, TipAt::peak).onsets.at(0).time_s, 1.9);
+}
+
 TEST(RecordFromHistoryDeathTest, WrongInput) {
   EXPECT_DEATH(record_from_history(one_node({1.0}), 0.0, 0), "slip rate");
   record::History history = one_node({1.0, 1.0});

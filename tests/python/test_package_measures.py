@@ -267,3 +267,35 @@ def test_datasets_of_others_do():
     assert np.array_equal(np.unique(found.t_s_Pa), [1.0])
     with pytest.raises(ValueError, match="threshold_m_per_s is 0; it must be above 0"):
         slipfront.find_fronts_in_history(history, threshold_m_per_s=0)
+
+
+def test_a_tip_where_the_traction_peaks():
+    """The threshold does not matter, as it does not to the tip of a rupture under rate and state."""
+    run = slipfront.run(
+        {
+            "plate": {"height_m": 0.05, "element_size_m": 1e-3}
+            | {"corner": "none", "sides": "absorbing", "top": "absorbing"},
+            "loading": {"method": "prestress"},
+            "prestress": {"t_Pa": 2.65e6, "p_Pa": 5e6},
+            "friction": {"law": "rate_and_state_aging"},
+            "event": {"kind": "nucleation"},
+            "nucleation": {"form": "overstress", "overstress_Pa": 1.1e6, "half_length_m": 10e-3},
+            "time": {"end_s": 80e-6},
+            "output": {"history_interval_s": 0.25e-6},
+        }
+    )
+
+    def onsets(threshold_m_per_s, tip):
+        fronts = slipfront.find_fronts_in_history(
+            run.history, threshold_m_per_s=threshold_m_per_s, tip=tip
+        ).sortby("x_m")
+        return fronts.onset_s.values[(fronts.x_m > 0.13) & (fronts.x_m < 0.16)]
+
+    low, high = onsets(1e-3, "peak"), onsets(0.1, "peak")
+    assert len(low) > 25
+    assert np.array_equal(low, high)
+    # The slip rate passes each threshold before that, the higher one later.
+    assert (onsets(1e-3, "slip_rate") < onsets(0.1, "slip_rate")).all()
+    assert (onsets(0.1, "slip_rate") < low).all()
+    with pytest.raises(slipfront.CaseError, match="tip is 'top'; it must be 'slip_rate' or 'peak'"):
+        onsets(1e-3, "top")
