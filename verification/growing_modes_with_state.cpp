@@ -136,7 +136,9 @@ Outcome verify(Effort effort) {
   charts.growth.log_x = charts.speed.log_x = true;
   Chart error{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
   for (const auto& slide : slides()) {
-    const auto [delay, p] = modes(slide);
+    const Modes followed = modes(slide);
+    const auto& delay = followed.delay;
+    const auto& p = followed.p;
     RateCurves theory(charts.theory_label(), Curve::Kind::theory), found(slide.name, Curve::Kind::program);
     for (std::size_t j = 0; j < p.size(); ++j) theory.add(delay[j], p[j].real(), -p[j].imag());
     const std::size_t middle = p.size() / 2;
