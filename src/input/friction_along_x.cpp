@@ -192,8 +192,9 @@ interface::ContactModel contact_model(const Case& config, const std::vector<doub
     config.friction, config.regularisation, config.contact
   };
   if (config.friction.has_state()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
-  if (auto laws = places.of(friction_at(config, x_m)); !laws.empty())
-    model.of_nodes = interface::NodeLaws(std::move(laws));
+  const auto laws = friction_at(config, x_m);
+  if (!laws.empty())
+    model.of_nodes = interface::NodeLaws(places.of(laws), std::ranges::any_of(laws, interface::strengthens));
   return model;
 }
 

@@ -122,6 +122,8 @@ double kinetic_coefficient(const FrictionLaw& law);
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m);
 /// d mu / d|v| there; negative where friction weakens with the slip rate.
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m);
+/// Whether mu rises with the slip rate somewhere, of a law without a state.
+bool strengthens(const FrictionLaw& law);
 /// What a law with a state does to small changes of steady sliding: mu answers the slip rate at once, and by
 /// the state with a delay.
 struct StateResponse {

@@ -241,7 +241,7 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
       });
     };
     if constexpr (requires { one.strengthens(); })
-      if (model.of_nodes.empty() ? one.strengthens() : model.of_nodes.strengthen_somewhere())
+      if (model.of_nodes.empty() ? one.strengthens() : model.of_nodes.some_strengthens())
         return update_by_law(RegistryLaw<Law, true>(model, one));
     return update_by_law(RegistryLaw<Law, false>(model, one));
   });

@@ -8,13 +8,14 @@
 #include "interface/friction/registry.hpp"
 
 namespace slipfront::interface {
-NodeLaws::NodeLaws(std::vector<FrictionLaw> laws) : laws_(std::move(laws)) {
+NodeLaws::NodeLaws(std::vector<FrictionLaw> laws, bool some_strengthens)
+    : laws_(std::move(laws)), some_strengthens_(some_strengthens) {
   const std::size_t n_blocks = (laws_.size() + lanes - 1) / lanes;
   for (std::size_t node = 0; node < n_blocks * lanes; ++node) {
     const FrictionLaw& law = laws_[std::min(node, laws_.size() - 1)];
+    some_strengthens_ = some_strengthens_ || strengthens(law);
     SLIPFRONT_ASSERT(law.name() == laws_.front().name(), "laws of one type along the interface");
     const auto values = visit(law, [&](const auto& l) {
-      strengthen_somewhere_ = strengthen_somewhere_ || strengthens(l);
       const auto folded = values_of<double>(constants_of(law, l));
       return std::vector<double>(folded.begin(), folded.end());
     });

@@ -36,21 +36,16 @@ template <class Law, class V, class Evaluator = typename Law::template Evaluator
 using ConstantsOf =
     std::conditional_t<HasState<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
 
-/// Whether mu rises with the slip rate somewhere.
-template <class Law>
-bool strengthens(const Law& law) {
-  if constexpr (requires { law.strengthens(); }) return law.strengthens();
-  return false;
-}
 /// @param law  `of` as its struct
 template <class Law>
 ConstantsOf<Law, double> constants_of(const FrictionLaw& of, const Law& law) {
   const auto evaluator = law.evaluator();
+  bool strengthens = false;
+  if constexpr (requires { law.strengthens(); }) strengthens = law.strengthens();
   if constexpr (HasState<Law>)
     return {evaluator, 0};
   else
-    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(),
-            strengthens(law) ? 1.0 : 0.0};
+    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(), strengthens ? 1.0 : 0.0};
 }
 /// The values of an aggregate of them.
 template <class V, class Constants>
@@ -73,13 +68,14 @@ class NodeLaws {
  public:
   /// None.
   NodeLaws() = default;
-  explicit NodeLaws(std::vector<FrictionLaw> laws);
+  /// @param some_strengthens  whether a node strengthens where there are others than these
+  explicit NodeLaws(std::vector<FrictionLaw> laws, bool some_strengthens = false);
 
   bool empty() const { return laws_.empty(); }
   std::size_t size() const { return laws_.size(); }
   const FrictionLaw& operator[](std::size_t node) const { return laws_[node]; }
   /// Whether the coefficient of any rises with the slip rate.
-  bool strengthen_somewhere() const { return strengthen_somewhere_; }
+  bool some_strengthens() const { return some_strengthens_; }
 
   /// The constants of the nodes from lanes * block on, those of the last node in lanes left over.
   template <class Law>
@@ -93,7 +89,7 @@ class NodeLaws {
  private:
   std::vector<FrictionLaw> laws_;  ///< [nodes]
   std::vector<double> constants_;  ///< [blocks x constants x lanes]
-  bool strengthen_somewhere_ = false;
+  bool some_strengthens_ = false;
 };
 
 }  // namespace slipfront::interface
