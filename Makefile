@@ -208,7 +208,8 @@ slurm-mpi-trial: build-mpi  ## runs that several processes share as jobs of such
 reference: ready  ## problems that other codes have solved, on several meshes each, into results-reference/
 	$(PYTHON) scripts/compare-reference.py a --program $(PROGRAM) --results $(RESULTS)-reference
 	$(PYTHON) scripts/compare-reference.py f --program $(PROGRAM) --results $(RESULTS)-reference
-	$(PYTHON) scripts/compare-reference.py r --program $(PROGRAM) --results $(RESULTS)-reference --h-mm 1 0.5 0.25
+	$(PYTHON) scripts/compare-reference.py r --program $(PROGRAM) --results $(RESULTS)-reference
+	$(PYTHON) scripts/compare-reference.py t --program $(PROGRAM) --results $(RESULTS)-reference
 	$(PYTHON) scripts/compare-tpv205.py --program $(PROGRAM) --results $(RESULTS)-reference
 
 examples: ready  ## the worked cases of examples/, into results-examples/, and their pictures in docs/figures

@@ -23,12 +23,16 @@ double thinning_of_join(double courant_number, int substeps);
 namespace symmetry { Outcome verify(Effort effort); }
 namespace growing_modes { Outcome verify(Effort effort); }
 namespace growing_modes_of_two { Outcome verify(Effort effort); }
+namespace growing_modes_with_state { Outcome verify(Effort effort); }
 namespace slip_patch { Outcome verify(Effort effort); }
 namespace crack { Outcome verify(Effort effort); }
 namespace layer_spectrum { Outcome verify(Effort effort); }
 namespace impact { Outcome verify(Effort effort); }
 namespace block { Outcome verify(Effort effort); }
 namespace spring_slider { Outcome verify(Effort effort); }
+namespace velocity_steps { Outcome verify(Effort effort); }
+namespace recontact { Outcome verify(Effort effort); }
+namespace stiff_base { Outcome verify(Effort effort); }
 namespace bonded_waves { Outcome verify(Effort effort); }
 // clang-format on
 

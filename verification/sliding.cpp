@@ -242,6 +242,16 @@ void start_sliding(motion::Stepper& stepper, const SlidingWave& w, const std::ve
       state.tractions.p_s_Pa[i] += (phase(above.mesh.x_m[above.mesh.interface_nodes[i]], 0) * delayed).real();
     stepper.start(state, 1, from.loads);
   }
+  // So has the state, which is the one under which t holds at V.
+  if (const auto sliding = stability::uniform_sliding(w.contact.law, w.speed_m_per_s, w.pressure_Pa);
+      sliding.state_rate_per_s > 0) {
+    const Complex of_state = sliding.state_slope_s_per_m * w.s_per_s * sliding.state_rate_per_s /
+                             (sliding.state_rate_per_s + w.s_per_s);
+    for (std::size_t i = 0; i < n_interface_nodes; ++i)
+      state.tractions.t_s_Pa[i] +=
+          w.pressure_Pa * (phase(above.mesh.x_m[above.mesh.interface_nodes[i]], 0) * of_state).real();
+    stepper.start(state, 1, from.loads);
+  }
 }
 
 }  // namespace

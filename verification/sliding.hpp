@@ -18,8 +18,8 @@ using Complex = std::complex<double>;
 /// A body that slides at speed V under uniform pressure, on the plane or on another body at rest, and a small
 /// wave on it.
 struct SlidingWave {
-  stability::Bodies bodies;  ///< without damping; only a half-space lies on another one
-  interface::ContactModel contact;
+  stability::Bodies bodies;         ///< without damping; only a half-space lies on another one
+  interface::ContactModel contact;  ///< V_i of a law with a state is the speed
   double pressure_Pa = 0;
   double speed_m_per_s = 0;
   double wavenumber_per_m = 0;

@@ -44,12 +44,18 @@ std::span<const Verification> verifications() {
       Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes::verify},
       Verification{"growing_modes_of_two", "Growth of waves between two sliding bodies",
                    growing_modes_of_two::verify},
+      Verification{"growing_modes_with_state", "Growth of waves under rate-and-state friction",
+                   growing_modes_with_state::verify},
       Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum::verify},
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch::verify},
       Verification{"impact", "Impact of a free body on the plane", impact::verify},
       Verification{"block", "Stick-slip of a block", block::verify},
       Verification{"spring_slider", "A slider on a spring under rate-and-state friction",
                    spring_slider::verify},
+      Verification{"velocity_steps", "Velocity steps and holds under rate-and-state friction",
+                   velocity_steps::verify},
+      Verification{"recontact", "A sliding node that leaves the plane and lands", recontact::verify},
+      Verification{"stiff_base", "The rigid plane as the limit of stiff bases", stiff_base::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;

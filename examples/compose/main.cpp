@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "exponential_weakening.hpp"
+#include "gradual_weakening.hpp"
 #include "rupture.hpp"
 
 namespace {

@@ -305,8 +305,9 @@ Front measure(const record::SlipRecord& record, const record::StaticState& state
       point.p_d_Pa = ahead.p_Pa;
       if (!std::isnan(ahead.t_Pa)) {
         point.U_s_J_per_m3 = energy_density_J_per_m3(ahead, options.elasticity);
+        const auto of_node = static_cast<std::size_t>(node);
         point.U_r_J_per_m3 = energy_density_J_per_m3(
-            {options.mu_s[static_cast<std::size_t>(node)] * at_onset.p_Pa, at_onset.p_Pa},
+            {options.mu_s[of_node] * at_onset.p_Pa + options.cohesion_Pa[of_node], at_onset.p_Pa},
             options.elasticity);
       }
     }

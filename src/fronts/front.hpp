@@ -45,7 +45,8 @@ struct FrontOptions {
       2e-3;                  ///< a shorter path, or a jump ahead no longer than this, is no front of its own
   double crack_share = 0.5;  ///< crack-like above this share of slipping length to distance run
   double pulse_share = 0.2;  ///< pulse-like below it
-  PerNode mu_s = 0;          ///< static friction coefficient, for U_r = U(p_r, mu_s p_r)
+  /// Static friction coefficient and cohesion, for U_r = U(p_r, mu_s p_r + cohesion).
+  PerNode mu_s = 0, cohesion_Pa = 0;
   Elasticity elasticity;
   double exclude_left_m = -infinity;  ///< no t_d, p_d at x below it (trigger zone)
   double exclude_right_m = infinity;  ///< ... nor above it
@@ -106,7 +107,7 @@ struct FrontPoint {
   double t_d_Pa = nan, p_d_Pa = nan;           ///< when the front is l* short of x
   double t_r_Pa = nan, p_r_Pa = nan;           ///< at the onset
   double U_s_J_per_m3 = nan;                   ///< U(p_d, t_d)
-  double U_r_J_per_m3 = nan;                   ///< U(p_r, mu_s p_r)
+  double U_r_J_per_m3 = nan;                   ///< U(p_r, mu_s p_r), with the cohesion
   double slipping_share = nan;                 ///< slipping length behind the tip over the distance run
   bool accelerating = false;                   ///< v_tip rises along the path, see find_fronts
   SpeedKind speed_kind = SpeedKind::path_end;  ///< v_tip is defined where it is `front`, nowhere else

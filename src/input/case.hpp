@@ -53,10 +53,13 @@ struct PrestressTable {
 
 /// Tractions of the interface before the event under loading.method = prestress: uniform, or from a table.
 struct Prestress {
-  double t_Pa = 0;            ///< drives the plate to +x
-  double p_Pa = 1e6;          ///< positive in compression
-  std::string file;           ///< CSV table; empty for uniform tractions
-  PrestressTable table = {};  ///< read from it by input::read_case
+  /// Drives the plate to +x; none: that of the friction law, which has a state.
+  std::optional<double> t_Pa = {};
+  double p_Pa = 1e6;           ///< positive in compression
+  std::string file;            ///< CSV table; empty for uniform tractions
+  PrestressTable table = {};   ///< read from it by input::read_case
+  double t_rate_Pa_per_s = 0;  ///< at which both grow during the event, everywhere alike
+  double p_rate_Pa_per_s = 0;
 };
 
 /// A table of parameters of the friction law along the interface as it was read, see
@@ -142,7 +145,15 @@ inline bool is_overstressed(const Case& config) {
   return config.event == interface::EventKind::nucleation &&
          config.nucleation.form == interface::NucleationForm::overstress;
 }
-/// Whether it starts by either, with the trigger's ramp and duration.
+/// Whether it starts by weakening a patch.
+inline bool is_weakened_patch(const Case& config) {
+  return config.event == interface::EventKind::nucleation && !is_overstressed(config);
+}
+/// Whether that takes its time.
+inline bool is_forced(const Case& config) {
+  return is_weakened_patch(config) && config.nucleation.form == interface::NucleationForm::forced;
+}
+/// Whether it starts by a force, with the trigger's ramp and duration.
 inline bool starts_by_force(const Case& config) {
   return is_pushed_at_edge(config) || is_overstressed(config);
 }

@@ -128,6 +128,9 @@ void set_defaults_by_rule(const Document& document, Case& config) {
     const Entry& entry = entry_of(rule.key);
     if (applies(entry, config) && !document.find(rule.key)) entry.set(config, rule.value(config));
   }
+  const auto& prestress = config.prestress;
+  if (prestress.t_Pa && !document.find("friction.V_i_m_per_s"))
+    settle_slip_rate(config.friction, *prestress.t_Pa, prestress.p_Pa);
 }
 
 }  // namespace slipfront::input

@@ -203,6 +203,8 @@ using interface::ContactAlgorithm;
 using interface::EventKind;
 using interface::Nucleation;
 using interface::NucleationForm;
+using interface::NucleationProfile;
+using interface::Ramp;
 using interface::Regularisation;
 using interface::Relaxed;
 using interface::Trigger;
@@ -278,6 +280,15 @@ Condition nucleated() {
   return {Message("{} = nucleation", Key("event.kind")),
           [](const Case& c) { return c.event == EventKind::nucleation; }};
 }
+Condition tapered() {
+  return {Message("{} = nucleation and {} = tapered", Key("event.kind"), Key("nucleation.profile")),
+          [](const Case& c) {
+            return c.event == EventKind::nucleation && c.nucleation.profile == NucleationProfile::tapered;
+          }};
+}
+Condition forced() {
+  return {Message("{} = nucleation and {} = forced", Key("event.kind"), Key("nucleation.form")), is_forced};
+}
 Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
           is_overstressed};
@@ -287,8 +298,8 @@ Condition rounded_by(Corner corner, const char* word) {
           [corner](const Case& c) { return c.plate.corner == corner; }};
 }
 Condition relaxed() {
-  return {Message("{} other than none", Key("friction.regularisation")),
-          [](const Case& c) { return c.regularisation.relaxed != Relaxed::none; }};
+  return {Message("{} = strength or pressure", Key("friction.regularisation")),
+          [](const Case& c) { return interface::has_rate(c.regularisation); }};
 }
 Condition at_edge() {
   return {Message("{} = left or right", Key("event.kind")),
@@ -466,10 +477,15 @@ void add_loading(Entries& all) {
 void add_prestress(Entries& all) {
   Table prestress(all, "prestress", &Case::prestress, Stage::tractions);
   prestress.only_with = uniform();
-  prestress.add("t_Pa", &Prestress::t_Pa, any(),
-                "uniform tangential traction, positive where it drives the plate to +x");
+  prestress.optional(
+      "t_Pa", &Prestress::t_Pa, any(), 1e6,
+      "uniform tangential traction, positive where it drives the plate to +x; under a friction "
+      "law with a state it may follow, see friction/rate_and_state.md");
   prestress.add("p_Pa", &Prestress::p_Pa, above(0), "uniform pressure");
   prestress.only_with = prestressed();
+  prestress.add("t_rate_Pa_per_s", &Prestress::t_rate_Pa_per_s, any(),
+                "t grows at this rate during the event, everywhere alike");
+  prestress.add("p_rate_Pa_per_s", &Prestress::p_rate_Pa_per_s, any(), "p grows at this rate");
   prestress.add("file", &Prestress::file,
                 "CSV table x_m,t_Pa,p_Pa of both instead, linear between its rows, from the first to the "
                 "last node of the interface; its path is relative to the case file");
@@ -478,9 +494,14 @@ void add_prestress(Entries& all) {
 void add_friction(Entries& all) {
   Table friction(all, "friction", &Case::regularisation, Stage::motion);
   friction.push(friction_law_entry());
-  friction.word("regularisation", &Regularisation::relaxed,
-                {{"none", Relaxed::none}, {"strength", Relaxed::strength}, {"pressure", Relaxed::pressure}},
-                "what follows changes of pressure with a delay, at the rate (|v| + v*)/L + 1/t*");
+  friction.word(
+      "regularisation", &Regularisation::relaxed,
+      {{"none", Relaxed::none},
+       {"strength", Relaxed::strength},
+       {"pressure", Relaxed::pressure},
+       {"initial_pressure", Relaxed::initial_pressure}},
+      "what follows changes of pressure with a delay, at the rate (|v| + v*)/L + 1/t*; "
+      "initial_pressure: nothing follows, the coefficient multiplies the pressure before the event");
   friction.only_with = relaxed();
   friction.add("relaxation_length_m", &Regularisation::length_m, above_or_infinite(0), "L of that rate");
   friction.add("relaxation_slip_rate_m_per_s", &Regularisation::slip_rate_m_per_s, at_least(0),
@@ -548,20 +569,41 @@ void add_event(Entries& all) {
       "trigger_amount", &Trigger::amount, at_least(0),
       "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s");
   trigger.only_with = started_by_force();
-  trigger.add("trigger_ramp_s", &Trigger::ramp_s, at_least(0), "time over which the trigger rises linearly");
+  trigger.add("trigger_ramp_s", &Trigger::ramp_s, at_least(0), "time over which the trigger rises");
+  trigger.word(
+      "trigger_ramp", &Trigger::ramp, {{"linear", Ramp::linear}, {"smooth", Ramp::smooth}},
+      "how it rises: linearly, or as exp[(t - T)^2/(t (t - 2 T))], whose derivatives are continuous");
   trigger.add("trigger_duration_s", &Trigger::duration_s, above_or_infinite(0),
               "the trigger is taken away this long after its start");
   Table nucleation(all, "nucleation", &Case::nucleation, Stage::event);
   nucleation.only_with = nucleated();
-  nucleation.word("form", &Nucleation::form,
-                  {{"weakened", NucleationForm::weakened}, {"overstress", NucleationForm::overstress}},
-                  "patch with a profile B(x): mu = mu_k + (1 - B) (mu of the law - mu_k), or an added "
-                  "tangential traction, with the trigger's ramp and duration");
+  nucleation.word(
+      "form", &Nucleation::form,
+      {{"weakened", NucleationForm::weakened},
+       {"forced", NucleationForm::forced},
+       {"overstress", NucleationForm::overstress}},
+      "patch with a profile B: mu = mu_k + (1 - B) (mu of the law - mu_k); the same in time from its "
+      "centre, mu of the law but at most mu_s - f B (mu_s - mu_k), f from 0 to 1; or an added "
+      "tangential traction, with the trigger's ramp and duration");
   nucleation.add("x_m", &Nucleation::x_m, any(), "centre of the patch, from the plate's left edge");
+  nucleation.word("profile", &Nucleation::profile,
+                  {{"tapered", NucleationProfile::tapered}, {"smooth", NucleationProfile::smooth}},
+                  "B(r) over the distance from the centre: 1 up to half_length_m and then down over taper_m, "
+                  "or exp[r^2/(r^2 - R^2)] up to R = half_length_m, whose derivatives are continuous");
   nucleation.add("half_length_m", &Nucleation::half_length_m, at_least(0),
-                 "B = 1 within this distance of the centre");
+                 "B = 1 within this distance of the centre; smooth: R");
+  nucleation.only_with = tapered();
   nucleation.add("taper_m", &Nucleation::taper_m, at_least(0),
                  "B falls to 0 over this length, as half a cosine wave");
+  nucleation.only_with = forced();
+  nucleation
+      .add("front_speed_m_per_s", &Nucleation::front_speed_m_per_s, above(0),
+           "speed at which the patch grows from its centre")
+      .has_to_be_set = true;
+  nucleation
+      .add("weakening_time_s", &Nucleation::weakening_time_s, at_least(0),
+           "time over which friction falls at a node that the patch has reached, linearly")
+      .has_to_be_set = true;
   nucleation.only_with = overstressed();
   nucleation.add("overstress_Pa", &Nucleation::overstress_Pa, any(), "added tangential traction where B = 1");
 }
@@ -676,8 +718,9 @@ std::string describe(const Range& range, const std::string& unit) {
 
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
-      {"m", 1e-12, 1e6},   {"s", 1e-15, 1e6},      {"Pa", 1e-6, 1e15},   {"kg/m3", 1e-6, 1e6},
-      {"m/s", 1e-12, 1e6}, {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18}, {"", 1e-18, 1e9}};
+      {"m", 1e-12, 1e6},      {"s", 1e-15, 1e12},    {"Pa", 1e-6, 1e15},
+      {"kg/m3", 1e-6, 1e6},   {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-12, 1e6},
+      {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},  {"", 1e-18, 1e9}};
   return all;
 }
 

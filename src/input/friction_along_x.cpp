@@ -172,6 +172,8 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
   std::vector<FrictionLaw> laws(x_m.size(), config.friction);
   if (!along_x.file.empty()) apply_table(along_x, x_m, laws);
   if (along_x.random_key != "none") apply_field(config, x_m, laws);
+  for (auto& law : laws)
+    if (config.prestress.t_Pa) settle_slip_rate(law, *config.prestress.t_Pa, config.prestress.p_Pa);
   require_allowed(along_x, x_m, laws);
   return laws;
 }

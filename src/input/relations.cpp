@@ -47,8 +47,8 @@ void check_state(const Case& config) {
     refuse(Key("contact.algorithm"), "predictor_corrector", "direct");
   if (config.loading.method == statics::LoadingMethod::ramp)
     refuse(Key("loading.method"), "ramp", "direct or prestress");
-  if (config.event == EventKind::nucleation && config.nucleation.form == interface::NucleationForm::weakened)
-    refuse(Key("nucleation.form"), "weakened", "overstress");
+  if (is_weakened_patch(config))
+    refuse(Key("nucleation.form"), is_forced(config) ? "forced" : "weakened", "overstress");
   if (interface::is_at_edge(config.event) && config.trigger.form == interface::TriggerForm::weakened)
     refuse(Key("event.trigger_form"), "weakened", "added or raised");
   if (config.regularisation.relaxed == interface::Relaxed::strength)
@@ -57,6 +57,29 @@ void check_state(const Case& config) {
         "or none",
         Key("friction.regularisation"), law, config.friction.name())
         .about(law.name);
+}
+
+/// Of theta_i, V_i and t two decide the third.
+void check_initial_state(const Case& config) {
+  const auto& law = config.friction;
+  const Key theta("friction.theta_i_s"), V("friction.V_i_m_per_s"), t("prestress.t_Pa");
+  if (!law.has_state() || law.parameter(leaf_of(theta.name)) == 0) return;
+  if (!is_prestressed(config) || !config.prestress.file.empty())
+    throw UserError(
+        "{} needs {} = prestress and {}, not a table: elsewhere it follows from t and {}; remove it", theta,
+        Key("loading.method"), Key("prestress.p_Pa"), V);
+  if (!config.prestress.t_Pa) return;
+  const double V_i = law.parameter(leaf_of(V.name));
+  auto settled = law;
+  settle_slip_rate(settled, *config.prestress.t_Pa, config.prestress.p_Pa);
+  const double follows = settled.parameter(leaf_of(V.name));
+  constexpr double least = 1e-12, most = 1e3, rounding = 1e-6;
+  if (!(follows >= least && follows <= most))
+    throw UserError("{} and {} give {} = {:.6g} m/s; it must be at least {:g} and at most {:g} m/s", theta, t,
+                    V, follows, least, most);
+  if (std::abs(V_i - follows) > rounding * follows)
+    throw UserError("{} and {} give {} = {:.6g} m/s, not {:.6g} m/s; leave one of the three out", theta, t, V,
+                    follows, V_i);
 }
 
 /// How many nodes processes can number that have some of them each follows when they are known.
@@ -93,9 +116,11 @@ void check_prestress(const Case& config, const Document& document) {
         .about(method.name);
   }
   const Key t("prestress.t_Pa"), p("prestress.p_Pa");
-  const bool uniform = document.find(t.name) && document.find(p.name);
+  const bool t_follows = config.friction.has_state();
+  const bool uniform = (document.find(t.name) || t_follows) && document.find(p.name);
   if (!uniform && config.prestress.file.empty())
-    throw UserError("{} = prestress needs {} and {}, or {}", method, t, p, Key("prestress.file"));
+    throw UserError("{} = prestress needs {}, or {}", method,
+                    t_follows ? Message("{}", p) : Message("{} and {}", t, p), Key("prestress.file"));
   if (config.plate.corner != mesh::Corner::none)
     throw UserError("{1} = prestress needs {0} = none: the whole lower edge starts in contact",
                     Key("plate.corner"), method);
@@ -165,7 +190,7 @@ void check_step(const motion::TimeStepping& time) {
                     Key("time.step_factor"), time.step_factor, Key("time.allow_unstable"));
 }
 
-void check_base(const Case& config, const Document& document) {
+void check_base(const Case& config) {
   if (!has_base_body(config)) return;
   const Key kind("base.kind");
   if ((config.base.plate.sides == Sides::periodic) != (config.plate.sides == Sides::periodic))
@@ -174,7 +199,10 @@ void check_base(const Case& config, const Document& document) {
   if (config.plate.corner == mesh::Corner::fillet)
     throw UserError("{} = fillet leaves nodes that face none of {} = body; choose none or relief",
                     Key("plate.corner"), kind);
-  // The defaults are those of the paper's plate, which nobody means for a base.
+}
+
+/// No default suits them.
+void check_keys_to_be_set(const Case& config, const Document& document) {
   for (const Entry& entry : common_entries())
     if (entry.has_to_be_set && entry.only_with->holds(config) && !document.find(entry.key))
       throw UserError("{} needs {}; set it", entry.only_with->setting, Key(entry.key));
@@ -199,7 +227,7 @@ void check_trigger(const Case& config) {
 void check_nucleation(const Case& config) {
   if (config.event != EventKind::nucleation) return;
   const auto& n = config.nucleation;
-  const double width_m = config.plate.width_m, reach_m = n.half_length_m + n.taper_m;
+  const double width_m = config.plate.width_m, reach_m = n.reach_m();
   const Key half_length("nucleation.half_length_m"), taper("nucleation.taper_m"), width("plate.width_m");
   if (n.x_m < 0 || n.x_m > width_m)
     throw UserError("{} is {:.12g} m; it must be on the interface, at 0 to {:.12g} m", Key("nucleation.x_m"),
@@ -209,11 +237,11 @@ void check_nucleation(const Case& config) {
   if (config.plate.sides == Sides::periodic && 2 * reach_m > width_m)
     throw UserError("{} + {:leaf} is {:.12g} m; with {} = periodic it must be at most half of {}, {:.12g} m",
                     half_length, taper, reach_m, Key("plate.sides"), width, 0.5 * width_m);
-  if (n.form == interface::NucleationForm::weakened && never_weakens(config))
+  if (is_weakened_patch(config) && never_weakens(config))
     throw UserError(
-        "{} = weakened does nothing where the friction law does not weaken, mu_k as large as mu_s; choose "
+        "{} = {} does nothing where the friction law does not weaken, mu_k as large as mu_s; choose "
         "overstress",
-        Key("nucleation.form"))
+        Key("nucleation.form"), is_forced(config) ? "forced" : "weakened")
         .about("event.kind", "friction.law");
 }
 
@@ -238,8 +266,18 @@ void check_fronts(const FrontSettings& fronts, const mesh::Plate& plate) {
                     Key("fronts.crack_share"), fronts.crack_share);
 }
 
+/// The critical shear is that at which t/p reaches mu_s.
+void check_cohesion(const Case& config) {
+  const auto& table = config.friction_along_x.table.keys;
+  const Key key("friction.cohesion_Pa");
+  if (is_prestressed(config)) return;
+  if (config.friction.cohesion_Pa() > 0 || std::ranges::find(table, leaf_of(key.name)) != table.end())
+    throw UserError("{} needs {} = prestress: statics find the shear at which t/p reaches mu_s; remove it",
+                    key, Key("loading.method"));
+}
+
 void check_regularisation(const interface::Regularisation& relaxation) {
-  if (relaxation.relaxed == interface::Relaxed::none) return;
+  if (!has_rate(relaxation)) return;
   const Key length("friction.relaxation_length_m");
   if (!std::isfinite(relaxation.length_m) && !std::isfinite(relaxation.time_s))
     throw UserError("{} needs a finite {} or {:leaf}; set one", Key("friction.regularisation"), length,
@@ -333,13 +371,16 @@ void check_each_table(const Case& config) {
 }
 
 void check_relations(const Case& config, const Document& document) {
+  check_initial_state(config);
   check_each_table(config);
   check_prestress(config, document);
   check_tilt(config);
   check_trigger_zone(config);
   check_solver(config);
-  check_base(config, document);
+  check_base(config);
+  check_keys_to_be_set(config, document);
   check_state(config);
+  check_cohesion(config);
   check_trigger(config);
   check_nucleation(config);
   check_fronts(config.fronts, config.plate);

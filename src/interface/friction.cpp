@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "interface/friction/registry.hpp"
 
 namespace slipfront::interface {
@@ -13,6 +14,9 @@ template <class Law>
 LawDescription describe_law() {
   LawDescription description{Law::name, Law::help, Law{}, {}, {}};
   for (const auto& p : Law::parameters()) description.parameters.push_back({p.key, p.min, p.max, p.help});
+  if constexpr (!HasState<Law>)
+    description.parameters.push_back(
+        {FrictionLaw::cohesion_key, 0, 1e15, "strength in contact besides mu p, before and after slip"});
   if constexpr (requires { Law::lists(); })
     for (const auto& list : Law::lists())
       description.lists.push_back({list.key, list.min, list.max, list.help});
@@ -35,10 +39,12 @@ std::size_t place_of(std::string_view key, const std::vector<LawDescription::Key
 FrictionLaw::FrictionLaw() : FrictionLaw(FirstLaw{}) {}
 
 double& FrictionLaw::parameter(std::string_view key) {
+  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
 double FrictionLaw::parameter(std::string_view key) const {
+  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
@@ -63,6 +69,10 @@ const LawDescription& description_of(const FrictionLaw& law) {
 
 double static_coefficient(const FrictionLaw& law) {
   return visit(law, [](const auto& l) { return l.static_coefficient(); });
+}
+
+double static_strength_Pa(const FrictionLaw& law, double p_Pa) {
+  return static_coefficient(law) * p_Pa + law.cohesion_Pa();
 }
 
 double kinetic_coefficient(const FrictionLaw& law) {
@@ -95,6 +105,20 @@ std::optional<StateResponse> state_response(const FrictionLaw& law, double speed
       const double V = std::max(speed_m_per_s, l.V_i_m_per_s);
       return StateResponse{l.a, l.a - V * l.steady_slope_s_per_m(V), l.d_c_m, V};
     }
+  });
+}
+
+double traction_before_Pa(const FrictionLaw& law, double p_Pa) {
+  return visit(law, [&]<class Law>(const Law& l) {
+    if constexpr (HasState<Law>) return l.traction_before_Pa(p_Pa);
+    return nan;
+  });
+}
+
+void settle_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa) {
+  visit(law, [&]<class Law>(const Law& l) {
+    if constexpr (HasState<Law>)
+      if (l.theta_i_s > 0) law.parameter("V_i_m_per_s") = l.slip_rate_before_m_per_s(t_Pa, p_Pa);
   });
 }
 

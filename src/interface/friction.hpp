@@ -24,10 +24,12 @@ namespace slipfront::interface {
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
 
-/// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states.
+/// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states. One
+/// without a state has a cohesion besides its own parameters.
 class FrictionLaw {
  public:
-  static constexpr std::size_t max_parameters = 8;
+  static constexpr std::size_t max_parameters = 9;
+  static constexpr const char* cohesion_key = "cohesion_Pa";
   using Lists = std::vector<std::vector<double>>;
 
   /// The registry's first law with its defaults.
@@ -69,6 +71,9 @@ class FrictionLaw {
     return law;
   }
 
+  /// Strength in contact besides mu p; 0 of a law with a state, which has no such parameter.
+  double cohesion_Pa() const { return cohesion_Pa_; }
+
   /// @pre the law has this parameter, named as in the table [friction]
   double& parameter(std::string_view key);
   double parameter(std::string_view key) const;
@@ -84,7 +89,8 @@ class FrictionLaw {
  private:
   std::string_view name_;
   std::array<double, max_parameters> values_{};  ///< in the order of the law's parameters
-  std::shared_ptr<const Lists> lists_;           ///< in the order of the law's lists; null where it has none
+  double cohesion_Pa_ = 0;
+  std::shared_ptr<const Lists> lists_;  ///< in the order of the law's lists; null where it has none
   std::span<const LawState> states_;
   std::shared_ptr<const ArrayLaw> function_;
 };
@@ -108,6 +114,8 @@ const std::vector<LawDescription>& law_descriptions();
 const LawDescription& description_of(const FrictionLaw& law);
 
 double static_coefficient(const FrictionLaw& law);
+/// Traction that an interface at rest bears under a pressure p > 0, cohesion included.
+double static_strength_Pa(const FrictionLaw& law, double p_Pa);
 /// The coefficient that a weakening law falls to.
 double kinetic_coefficient(const FrictionLaw& law);
 /// mu after a slip path and at a slip rate |v|; of a law with a state that of steady sliding.
@@ -123,6 +131,11 @@ struct StateResponse {
 };
 /// At a slip rate, at V_i where that is faster; none for laws without a state.
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s);
+/// t before the event under p, of a law with a state, where it is not given.
+double traction_before_Pa(const FrictionLaw& law, double p_Pa);
+/// Gives a law with a state whose theta_i is given the V_i that follows from t and p; leaves others as they
+/// are.
+void settle_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa);
 /// Of a law that weakens with slip, the d_c of linear slip weakening with its coefficients and fracture
 /// energy.
 std::optional<double> weakening_slip_m(const FrictionLaw& law);

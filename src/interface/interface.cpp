@@ -52,6 +52,7 @@ auto read_nodes(const Interface& s, Place at) {
   n.mass_per_length_kg_m2 = at.read(s.mass_per_length_kg_m2);
   n.tangential_mass_ratio = at.read(s.tangential_mass_ratio);
   n.intact = at.read(s.intact);
+  n.is_forced = s.is_forced;
   n.v_x_m_per_s = at.read(s.v_x_m_per_s);
   n.v_y_m_per_s = at.read(s.v_y_m_per_s);
   n.u_y_m = at.read(s.u_y_m);
@@ -101,7 +102,7 @@ struct RegistryLaw {
   RegistryLaw(const ContactModel& model, const Law& law)
       : of_nodes(model.of_nodes.empty() ? nullptr : &model.of_nodes),
         tip_slip_rate_m_per_s(model.tip_slip_rate_m_per_s),
-        constants(in_lanes(law)) {
+        constants(in_lanes(model.law, law)) {
     set_tip();
   }
   void go_to(std::size_t node) {
@@ -169,10 +170,13 @@ template <ContactAlgorithm algorithm, class Law, class Form>
 /// The update by a law over arrays: again and again from the same state, each time with one more answer,
 /// until nothing is left to ask.
 template <ContactAlgorithm algorithm, class Form>
-bool update_by(const ArrayLaw& law, double mu_k, const Form& form, double dt_s, Interface& state) {
+bool update_by(const FrictionLaw& of, const Form& form, double dt_s, Interface& state) {
+  const ArrayLaw& law = *of.function();
   const std::size_t padded = (state.size() + lanes - 1) / lanes * lanes;
   Answers answers;
-  const LawOverArrays asking{{{&answers}, SimdVector{} + mu_k, SimdVector{} + mu_k}};
+  const auto all = [](double value) { return SimdVector{} + value; };
+  const LawOverArrays asking{
+      {{&answers}, all(static_coefficient(of)), all(kinetic_coefficient(of)), all(of.cohesion_Pa()), all(0)}};
   while (true) {
     answers.asked = false;
     answers.speed_m_per_s.assign(padded, 0);
@@ -197,8 +201,9 @@ void start_contact(const ContactModel& model, Interface& s) {
   with_form(model.regularisation, 0, [&](const auto& form) {
     for (std::size_t i = 0; i < s.size(); ++i) {
       const FrictionLaw& law = model.law_at(i);
-      const double mu_0 = weakened(static_coefficient(law), kinetic_coefficient(law), s.intact[i]);
-      s.strength_Pa[i] = mu_0 * s.p_Pa[i];
+      const double mu_s = static_coefficient(law), mu_k = kinetic_coefficient(law);
+      const double mu_0 = weakened(mu_s, mu_s, mu_k, s.intact[i], s.is_forced);
+      s.strength_Pa[i] = mu_0 * s.p_Pa[i] + (s.p_Pa[i] > 0 ? law.cohesion_Pa() : 0);
       const auto memory = form.initial(mu_0, s.p_Pa[i]);
       s.relaxed_Pa[i] = memory.relaxed_Pa;
       s.target_Pa[i] = memory.target_Pa;
@@ -217,12 +222,11 @@ void start_contact(const ContactModel& model, Interface& s) {
 bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   const double since_last_s = state.begun ? dt_s : 0;
   state.begun = true;
-  if (const ArrayLaw* law = model.law.function())
+  if (model.law.function())
     return with_form(model.regularisation, since_last_s, [&](const auto& form) {
-      const double mu_k = kinetic_coefficient(model.law);
       return model.algorithm == ContactAlgorithm::direct
-                 ? update_by<ContactAlgorithm::direct>(*law, mu_k, form, dt_s, state)
-                 : update_by<ContactAlgorithm::predictor_corrector>(*law, mu_k, form, dt_s, state);
+                 ? update_by<ContactAlgorithm::direct>(model.law, form, dt_s, state)
+                 : update_by<ContactAlgorithm::predictor_corrector>(model.law, form, dt_s, state);
     });
   return visit(model.law, [&]<class Law>(const Law& one) {
     const RegistryLaw<Law> law(model, one);

@@ -46,7 +46,8 @@ struct Interface {
   std::vector<double> mass_per_length_kg_m2;  ///< lumped mass over tributary length
   /// Effective mass along x over that along y, mass_per_length_kg_m2: 1 but for nodes with dashpots.
   std::vector<double> tangential_mass_ratio;
-  /// 1 is the full law; mu = mu_k + intact (mu_law - mu_k), so that 0 is a node weakened for good.
+  /// 1 is the full law, 0 a node weakened for good: mu = mu_k + intact (mu_law - mu_k); is_forced: mu is that
+  /// of the law, but at most mu_k + intact (mu_s - mu_k).
   std::vector<double> intact;
   // The motion, gathered from and scattered to the plate.
   std::vector<double> v_x_m_per_s, v_y_m_per_s;  ///< trial half-step velocity in, corrected velocity out
@@ -71,6 +72,7 @@ struct Interface {
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
   /// State variables of the friction law, see FrictionLaw::states.
   std::vector<std::vector<double>> law_states;
+  bool is_forced = false;
   bool begun = false;  ///< whether there was an update since start_contact
 
   explicit Interface(std::size_t n, std::span<const LawState> states_of_law = {});

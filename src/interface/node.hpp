@@ -25,12 +25,16 @@ struct Node {
   V acceleration_m_per_s2;
   Mask<V> locked;
   std::array<V, n_law_states> law_states;
+  bool is_forced = false;
 };
 
-/// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
+/// The coefficient of a node that may be weakened, see Interface::intact; exactly the law's where intact
+/// is 1.
 template <class V>
-inline V weakened(V mu, V mu_k, V intact) {
-  return mu - (1 - intact) * (mu - mu_k);
+inline V weakened(V mu, V mu_at_rest, V mu_k, V intact, bool is_forced) {
+  if (!is_forced) return mu - (1 - intact) * (mu - mu_k);
+  const V most = mu_k + intact * (mu_at_rest - mu_k);
+  return select(intact < 1 && most < mu, most, mu);
 }
 
 /// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
@@ -58,14 +62,43 @@ inline void press_locked(N& n, V impedance, double per_step) {
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
+/// At which slip rate friction that rises with it is evaluated. Where it rises steeply against the node's
+/// impedance the iteration of weakening laws would diverge, and the middle of the step leave a swing about
+/// the balance: the rate is so much nearer to the end of the step that a linear law comes to its balance in
+/// one, and found by Newton's steps.
+template <class Mu, class V>
+struct Strengthening {
+  const Mu& mu;
+  V slip_m, compliance;  ///< what a coefficient takes off the slip rate, p/impedance
+  V w;                   ///< share of the rate after the step
+
+  Strengthening(const Mu& mu_, V slip, V compliance_, V last_rate, V v_trial)
+      : mu(mu_), slip_m(slip), compliance(compliance_) {
+    const V g = slope(last_rate);
+    w = select(g > 2, 1 - 1 / select(g > 2, g, V{} + 2), V{} + 0.5);
+    w = select(last_rate * v_trial < 0, V{} + 1, w);
+  }
+  V slope(V rate) const { return positive_part(mu.slope_s_per_m(absolute(rate), slip_m)) * compliance; }
+  /// @param found  rate that the evaluation at `rate` has given
+  V next(V rate, V found, V v_trial, Mask<V> sticks) const {
+    const V g = select(sticks, V{}, w * slope(rate));
+    const V next = (found + g * rate) / (1 + g);
+    return select(next * v_trial < 0, V{}, next);
+  }
+};
+
 /// Friction of a law by which nodes stick or slip.
 /// @param impedance_x  effective mass along x over tributary length and dt
 template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Mu, class Form, class V>
 inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
-  const auto& [mu, mu_at_rest, mu_k] = law;
+  const auto& [mu, mu_at_rest, mu_k, cohesion_of_law_Pa, strengthens] = law;
   const V p = n.p_Pa;
+  const V cohesion = select(p > 0, cohesion_of_law_Pa, V{});
+  const auto coefficient = [&](V speed, V slip) {
+    return weakened(mu(speed, slip), mu_at_rest, mu_k, n.intact, n.is_forced);
+  };
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
   const auto step = form.step(absolute(last_rate));
@@ -82,28 +115,44 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
     direction = select(under_way, rate, t_stop);
     along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, trial_traction);
   }
+  constexpr bool may_strengthen = !predicts && requires {
+    mu.slope_s_per_m(rate, rate);
+  };
+  const bool does_strengthen = may_strengthen && any(strengthens > 0);
   V strength{}, first_strength{}, t{}, v_x{};
   Mask<V> sticks{};
   Memory<V> now;
-  for (int k = 0; k < n_evaluations; ++k) {
-    const V mu_now = weakened(mu(absolute(rate), n.slip_m), mu_k, n.intact);
+  Mask<V> goes_on = p == p;
+  constexpr int most = 40;
+  for (int k = 0; k < (does_strengthen ? most : n_evaluations); ++k) {
+    const V mu_now = coefficient(absolute(rate), n.slip_m);
     now = form.now(step, n.memory, mu_now, p);
-    strength = form.strength(mu_now, p, now);
+    strength = form.strength(mu_now, p, now) + cohesion;
     if (k == 0) first_strength = strength;
     sticks = along <= strength;  // not the contrary, so that a motion that is not a number is seen as slip
     t = select(sticks, t_stop, copy_sign(strength, direction));
     v_x = select(sticks, V{}, v_trial - t / impedance_x);
-    const V mean_rate = 0.5 * (last_rate + v_x);
-    if (!any(mean_rate != rate)) break;  // further evaluations would repeat this one
-    rate = mean_rate;
+    V next = 0.5 * (last_rate + v_x);
+    if constexpr (may_strengthen)
+      if (does_strengthen) {
+        // Lanes do not see how many evaluations others take.
+        const Strengthening rises(mu, n.slip_m, p / impedance_x, last_rate, v_trial);
+        const V solved = rises.next(rate, rises.w * v_x + (1 - rises.w) * last_rate, v_trial, sticks);
+        next = select(strengthens > 0, solved, next);
+        goes_on = goes_on && absolute(next - rate) > 1e-14 * absolute(rate);
+        if (k + 1 >= n_evaluations) goes_on = goes_on && strengthens > 0;
+        next = select(goes_on, next, rate);
+      }
+    if (!any(next != rate)) break;  // further evaluations would repeat this one
+    rate = next;
   }
   const Mask<V> slipping = !sticks && p > 0;
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
-  V mu_stuck = mu_at_rest;
-  if constexpr (slip_memory != SlipMemory::none) mu_stuck = mu(V{}, slip);
-  const V strength_at_rest = form.strength(weakened(mu_stuck, mu_k, n.intact), p, now);
+  V mu_stuck = weakened(mu_at_rest, mu_at_rest, mu_k, n.intact, n.is_forced);
+  if constexpr (slip_memory != SlipMemory::none) mu_stuck = coefficient(V{}, slip);
+  const V strength_at_rest = form.strength(mu_stuck, p, now) + cohesion;
 
   if constexpr (predicts) n.acceleration_m_per_s2 = select(sticks, V{}, (v_x - last_rate) * (1 / dt_s));
   n.v_x_m_per_s = v_x;

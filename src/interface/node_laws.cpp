@@ -13,8 +13,8 @@ NodeLaws::NodeLaws(std::vector<FrictionLaw> laws) : laws_(std::move(laws)) {
   for (std::size_t node = 0; node < n_blocks * lanes; ++node) {
     const FrictionLaw& law = laws_[std::min(node, laws_.size() - 1)];
     SLIPFRONT_ASSERT(law.name() == laws_.front().name(), "laws of one type along the interface");
-    const auto values = visit(law, [](const auto& l) {
-      const auto folded = values_of<double>(constants_of(l));
+    const auto values = visit(law, [&](const auto& l) {
+      const auto folded = values_of<double>(constants_of(law, l));
       return std::vector<double>(folded.begin(), folded.end());
     });
     constants_.resize(n_blocks * values.size() * lanes);

@@ -18,6 +18,8 @@ template <class Coefficient, class V>
 struct LawConstants {
   Coefficient mu;
   V mu_at_rest, mu_k;
+  V cohesion_Pa;
+  V strengthens;  ///< 1 where mu rises with the slip rate somewhere, else 0
 };
 /// The same of a law with a state, which never sticks.
 /// @tparam Evolving  the law's evaluator for V
@@ -34,13 +36,21 @@ template <class Law, class V, class Evaluator = typename Law::template Evaluator
 using ConstantsOf =
     std::conditional_t<HasState<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
 
+/// Whether mu rises with the slip rate somewhere.
 template <class Law>
-ConstantsOf<Law, double> constants_of(const Law& law) {
+bool strengthens(const Law& law) {
+  if constexpr (requires { law.strengthens(); }) return law.strengthens();
+  return false;
+}
+/// @param law  `of` as its struct
+template <class Law>
+ConstantsOf<Law, double> constants_of(const FrictionLaw& of, const Law& law) {
   const auto evaluator = law.evaluator();
   if constexpr (HasState<Law>)
     return {evaluator, 0};
   else
-    return {evaluator, evaluator(0, 0), law.kinetic_coefficient()};
+    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(),
+            strengthens(law) ? 1.0 : 0.0};
 }
 /// The values of an aggregate of them.
 template <class V, class Constants>
@@ -50,8 +60,8 @@ auto values_of(const Constants& constants) {
 }
 /// The same law in all lanes.
 template <class Law>
-ConstantsOf<Law, SimdVector> in_lanes(const Law& law) {
-  const auto values = values_of<double>(constants_of(law));
+ConstantsOf<Law, SimdVector> in_lanes(const FrictionLaw& of, const Law& law) {
+  const auto values = values_of<double>(constants_of(of, law));
   std::array<SimdVector, values.size()> in_lanes;
   for (std::size_t k = 0; k < values.size(); ++k) in_lanes[k] = SimdVector{} + values[k];
   return std::bit_cast<ConstantsOf<Law, SimdVector>>(in_lanes);

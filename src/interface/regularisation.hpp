@@ -8,9 +8,10 @@ namespace slipfront::interface {
 
 /// Which quantity follows its instantaneous value with a delay.
 enum class Relaxed {
-  none,      ///< strength S = mu p at once
-  strength,  ///< dS/dt = rate (mu p - S)
-  pressure,  ///< dq/dt = rate (p - q), S = mu q
+  none,              ///< strength S = mu p at once
+  strength,          ///< dS/dt = rate (mu p - S)
+  pressure,          ///< dq/dt = rate (p - q), S = mu q
+  initial_pressure,  ///< S = mu p_s in contact, p_s the pressure before the event: no rate
 };
 
 /// Delayed response of friction to changes of pressure (Prakash and Clifton 1993, simplified): the quantity
@@ -22,6 +23,11 @@ struct Regularisation {
   double slip_rate_m_per_s = 0;  ///< v*
   double time_s = infinity;      ///< t*
 };
+
+/// Whether a quantity relaxes.
+inline bool has_rate(const Regularisation& r) {
+  return r.relaxed == Relaxed::strength || r.relaxed == Relaxed::pressure;
+}
 
 /// Relaxation rate at a slip rate, 1/s.
 inline double relaxation_rate_per_s(const Regularisation& r, double speed_m_per_s) {
@@ -123,11 +129,31 @@ struct RelaxedPressure {
   static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
 };
 
+/// The strength does not depend on pressure in contact: the coefficient acts on the one before the event.
+struct InitialPressure {
+  static constexpr bool remembers = true;
+  struct Step {};
+  template <class V>
+  Step step(V /*speed_m_per_s*/) const {
+    return {};
+  }
+  template <class V>
+  static Memory<V> now(Step, const Memory<V>& before, V /*mu*/, V /*p_Pa*/) {
+    return before;
+  }
+  template <class V>
+  static V strength(V mu, V p_Pa, const Memory<V>& now) {
+    return select(p_Pa > 0, mu * now.relaxed_Pa, V{});
+  }
+  static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
+};
+
 /// Calls f with the form that the settings name. The choice is made once per contact update.
 template <class F>
 auto with_form(const Regularisation& r, double dt_s, F&& f) {
   if (r.relaxed == Relaxed::strength) return f(RelaxedStrength{{r, dt_s}});
   if (r.relaxed == Relaxed::pressure) return f(RelaxedPressure{{r, dt_s}});
+  if (r.relaxed == Relaxed::initial_pressure) return f(InitialPressure{});
   return f(Immediate{});
 }
 

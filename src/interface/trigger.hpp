@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "base/numbers.hpp"
 
 namespace slipfront::interface {
@@ -26,21 +28,31 @@ enum class TriggerForm {
   weakened,  ///< its friction is mu_k from the start: Interface::intact = 0
 };
 
+/// How a trigger's traction grows in time, to its full size at T = ramp_s.
+enum class Ramp {
+  linear,
+  smooth,  ///< exp[(t - T)^2/(t (t - 2 T))]: all derivatives are continuous (SCEC TPV101)
+};
+
 /// A zone next to an edge of contact. The traction of `added` and `raised` is an external force on the plate,
 /// not part of the reported t, times a ramp in time. It acts, and t_s counts, in the direction in which the
 /// zone as a whole is loaded, +x for none; where it would lower t_s it is left out.
 struct Trigger {
   TriggerForm form = TriggerForm::added;
-  double zone_m = 10e-3;         ///< measured inward from the outermost node in contact
-  double amount = 5;             ///< see TriggerForm
-  double ramp_s = 5e-6;          ///< rises linearly from zero over this time
+  double zone_m = 10e-3;  ///< measured inward from the outermost node in contact
+  double amount = 5;      ///< see TriggerForm
+  Ramp ramp = Ramp::linear;
+  double ramp_s = 5e-6;          ///< rises from zero over this time
   double duration_s = infinity;  ///< taken away this long after its start
 };
 
 /// Time factor of the trigger, 0 to 1.
 inline double trigger_factor(const Trigger& trigger, double time_s) {
   if (time_s >= trigger.duration_s) return 0;
-  return time_s >= trigger.ramp_s ? 1 : time_s / trigger.ramp_s;
+  if (time_s >= trigger.ramp_s) return 1;
+  const double s = time_s / trigger.ramp_s;
+  if (trigger.ramp == Ramp::linear) return s;
+  return s > 0 ? std::exp((s - 1) * (s - 1) / (s * (s - 2))) : 0;
 }
 
 }  // namespace slipfront::interface

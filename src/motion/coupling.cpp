@@ -26,7 +26,6 @@ Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBo
       v_y_before_(interface_.size()),
       v_x_trial_(interface_.size()),
       v_y_trial_(interface_.size()),
-      trigger_force_N_(interface_.size(), 0.0),
       start_u_x_m_(interface_.size()),
       own_begin_(static_cast<std::size_t>(bodies_.front().side->own.begin)),
       own_end_(static_cast<std::size_t>(bodies_.front().side->own.end)) {
@@ -109,19 +108,28 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
 }
 
 void Coupling::set_loads(Loads loads) {
-  trigger_ = loads.trigger;
-  trigger_force_N_ = std::move(loads.trigger_force_N_per_m);
-  trigger_force_N_.resize(interface_.size(), 0.0);
+  loads_ = std::move(loads);
+  loads_.trigger_force_N_per_m.resize(interface_.size(), 0.0);
+  SLIPFRONT_ASSERT(loads_.intact.empty() || loads_.intact.size() == interface_.size(),
+                   "intact of other nodes");
+  loads_.intact.resize(interface_.size(), 1.0);
+  interface_.intact = loads_.intact;
+  interface_.is_forced = !loads_.weakens_at_s.empty();
   trigger_nodes_.clear();
-  for (std::size_t i = 0; i < trigger_force_N_.size(); ++i)
-    if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
-  prestress_t_Pa_.clear();
-  prestress_p_Pa_.clear();
-  if (!loads.prestress_t_Pa.empty())
-    set_prestress(std::move(loads.prestress_t_Pa), std::move(loads.prestress_p_Pa));
-  SLIPFRONT_ASSERT(loads.intact.empty() || loads.intact.size() == interface_.size(), "intact of other nodes");
-  interface_.intact = std::move(loads.intact);
-  interface_.intact.resize(interface_.size(), 1.0);
+  weakening_nodes_.clear();
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
+    if (loads_.trigger_force_N_per_m[i] != 0) trigger_nodes_.push_back(i);
+    if (!loads_.weakens_at_s.empty() && loads_.intact[i] < 1) weakening_nodes_.push_back(i);
+  }
+  weaken(0);
+}
+
+void Coupling::weaken(double time_s) {
+  for (const auto i : weakening_nodes_) {
+    const double since_s = time_s - loads_.weakens_at_s[i], all_s = loads_.weakening_time_s;
+    const double share = since_s >= all_s ? 1 : std::max(0.0, since_s / all_s);
+    interface_.intact[i] = 1 - share * (1 - loads_.intact[i]);
+  }
 }
 
 void Coupling::add_to(StateView& state) {
@@ -130,7 +138,8 @@ void Coupling::add_to(StateView& state) {
     if (kind == interface::FieldKind::result || kind == interface::FieldKind::memory)
       arrays.push_back(values);
   });
-  for (const auto* load : {&interface_.intact, &trigger_force_N_, &prestress_t_Pa_, &prestress_p_Pa_})
+  for (const auto* load :
+       {&loads_.intact, &loads_.trigger_force_N_per_m, &loads_.prestress_t_Pa, &loads_.prestress_p_Pa})
     if (!load->empty()) arrays.push_back(std::as_const(*load));
   arrays.push_back(start_u_x_m_);
   for (auto& side : sides_) arrays.insert(arrays.end(), {side.v_x, side.v_y});
@@ -142,13 +151,16 @@ void Coupling::add_to(StateView& state) {
 void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa) {
   SLIPFRONT_ASSERT(t_Pa.size() == interface_.size() && p_Pa.size() == interface_.size(),
                    "prestress of other nodes");
-  prestress_t_Pa_ = std::move(t_Pa);
-  prestress_p_Pa_ = std::move(p_Pa);
+  loads_.prestress_t_Pa = std::move(t_Pa);
+  loads_.prestress_p_Pa = std::move(p_Pa);
 }
 
 void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, record::History* sample,
                       record::Energies& works) {
-  const double impulse_s = dt_s * trigger_factor(trigger_, time_s);
+  const double impulse_s = dt_s * trigger_factor(loads_.trigger, time_s);
+  prestress_growth_t_Pa_ = time_s * loads_.prestress_rate.t_Pa_per_s;
+  prestress_growth_p_Pa_ = time_s * loads_.prestress_rate.p_Pa_per_s;
+  weaken(time_s);
   std::swap(interface_.v_x_m_per_s, v_x_before_);
   std::swap(interface_.v_y_m_per_s, v_y_before_);
   if (sides_.empty())
@@ -195,11 +207,11 @@ void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, dou
     std::copy_n(&body.v_m_per_s->y[run.first], run.count, &v_y[run.at]);
   }
   const auto& mass = body.side->mass_kg;
-  for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * trigger_force_N_[i] / mass[i];
-  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
+  for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * loads_.trigger_force_N_per_m[i] / mass[i];
+  for (std::size_t i = 0; i < loads_.prestress_t_Pa.size(); ++i) {
     const double per_pressure = dt_s * tributary_m_[i] / mass[i];
-    v_x[i] += sign * per_pressure * prestress_t_Pa_[i];
-    v_y[i] -= per_pressure * prestress_p_Pa_[i];
+    v_x[i] += sign * per_pressure * prestress_t_Pa(i);
+    v_y[i] -= per_pressure * prestress_p_Pa(i);
   }
   for (const auto& [i, n, d_x, d_y] : body.side->dashpots) {
     // The contact's tractions act on the effective mass m (1 + d).
@@ -319,14 +331,14 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
     add_dashpots(bodies_.front(), interface_.v_x_m_per_s, interface_.v_y_m_per_s, v_x_before_, v_y_before_);
   for (std::size_t s = 0; s < sides_.size(); ++s)
     add_dashpots(bodies_[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
-  for (std::size_t i = own_begin_; i < std::min(own_end_, prestress_t_Pa_.size()); ++i)
+  for (std::size_t i = own_begin_; i < std::min(own_end_, loads_.prestress_t_Pa.size()); ++i)
     works.prestress_work += 0.5 * dt_s * tributary_m_[i] *
-                            (prestress_t_Pa_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
-                             prestress_p_Pa_[i] * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
+                            (prestress_t_Pa(i) * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
+                             prestress_p_Pa(i) * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
   for (const auto i : trigger_nodes_)
     if (is_own(i))
       works.trigger_work +=
-          0.5 * impulse_s * trigger_force_N_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+          0.5 * impulse_s * loads_.trigger_force_N_per_m[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
 static void append(std::vector<double>& to, const std::vector<double>& from) {

@@ -27,6 +27,13 @@ struct Loads {
   std::vector<double> trigger_force_N_per_m = {};
   interface::Trigger trigger = {};
   std::vector<double> intact = {};  ///< weakens nodes for good, see Interface::intact
+  /// When they are forced to weaken, linearly over the time; or empty: at once.
+  std::vector<double> weakens_at_s = {};
+  double weakening_time_s = 0;
+  /// At which the prescribed tractions grow, everywhere alike.
+  struct Rate {
+    double t_Pa_per_s = 0, p_Pa_per_s = 0;
+  } prestress_rate = {};
 };
 
 /// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface
@@ -90,6 +97,8 @@ class Coupling {
   double u_y_m(std::size_t body, std::size_t i) const {
     return bodies_[body].u_m->y[bodies_[body].side->nodes[i]];
   }
+  double prestress_t_Pa(std::size_t i) const { return loads_.prestress_t_Pa[i] + prestress_growth_t_Pa_; }
+  double prestress_p_Pa(std::size_t i) const { return loads_.prestress_p_Pa[i] + prestress_growth_p_Pa_; }
   /// The trial motion of the interface nodes, all forces but the contact's included.
   void gather(double dt_s, double impulse_s);
   void gather_both(double dt_s, double impulse_s);
@@ -100,6 +109,8 @@ class Coupling {
   /// Gives the corrected velocities to the bodies and moves their nodes.
   void scatter(double dt_s, record::Energies& works);
   void scatter_both(double dt_s, record::Energies& works);
+  /// Brings weakening nodes to this time.
+  void weaken(double time_s);
   void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const;
   /// Before an update, which takes them on to the next one.
   void append_law_states(record::History& history) const;
@@ -113,13 +124,14 @@ class Coupling {
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [nodes]
   /// Relative, of the update under way. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;
-  std::vector<Side> sides_;  ///< of two bodies; else none
-  interface::Trigger trigger_;
-  std::vector<double> trigger_force_N_;
-  std::vector<std::size_t> trigger_nodes_;               ///< where the force is not zero
-  std::vector<double> prestress_t_Pa_, prestress_p_Pa_;  ///< [nodes], or empty
-  std::vector<double> start_u_x_m_;                      ///< slip is counted from it
-  std::size_t own_begin_, own_end_;                      ///< nodes that count in works, see BodyMotion
+  std::vector<Side> sides_;                   ///< of two bodies; else none
+  Loads loads_;                               ///< forces and intact of all nodes
+  std::vector<std::size_t> trigger_nodes_;    ///< where the force is not zero
+  std::vector<std::size_t> weakening_nodes_;  ///< whose friction falls during the event
+  /// By how much the prescribed tractions have grown at the update under way.
+  double prestress_growth_t_Pa_ = 0, prestress_growth_p_Pa_ = 0;
+  std::vector<double> start_u_x_m_;  ///< slip is counted from it
+  std::size_t own_begin_, own_end_;  ///< nodes that count in works, see BodyMotion
 };
 
 }  // namespace slipfront::motion

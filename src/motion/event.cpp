@@ -10,7 +10,6 @@
 #include "motion/observers/history_rows.hpp"
 #include "motion/observers/probe_rows.hpp"
 #include "motion/observers/snapshots.hpp"
-#include "motion/trigger_zone.hpp"
 
 namespace slipfront::motion {
 
@@ -40,7 +39,7 @@ EventRun::EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor&
 
 Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output,
                               Observers more) {
-  const auto& [state, mu_s, waves, trigger, time, sampling, halo] = setup;
+  const auto& [state, mu_s, waves, loads_settle_s, time, sampling, halo] = setup;
   const double step_s = stepper_.step_s();
   const auto n_steps = steps_of(time, step_s);
   const auto start = stepper_.energies();
@@ -53,7 +52,7 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   list.push_back(std::make_unique<Snapshots>(sampling.snapshot_times_s, *output));
   list.push_back(std::make_unique<BlowUpMonitor>(stepper_, waves.c_L_m_per_s, time.precision, start));
   list.push_back(std::make_unique<RestCriterion>(stepper_, slip_rate_scale_m_per_s(state, mu_s, waves),
-                                                 last_change_s(trigger), time.quiet_s));
+                                                 loads_settle_s, time.quiet_s));
   for (auto& observer : more) list.push_back(std::move(observer));
   list.push_back(std::make_unique<Progress>(stepper_, monitor_interval, n_steps, monitor));
   list.push_back(std::make_unique<EndTime>(n_steps));

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/per_node.hpp"
-#include "interface/trigger.hpp"
 #include "motion/observed_run.hpp"
 #include "motion/observers/energy_rows.hpp"
 #include "motion/observers/event_output.hpp"
@@ -53,7 +52,7 @@ struct EventSetup {
   const statics::Equilibrium& state;  ///< tractions and contact before it; its displacements are not needed
   PerNode mu_s;                       ///< of the interface nodes in that state
   Waves waves;
-  interface::Trigger trigger;
+  double loads_settle_s;  ///< time from which the loads stay
   TimeStepping time;
   Sampling sampling;
   int halo = 0;  ///< nodes on each side whose tractions are kept at an onset

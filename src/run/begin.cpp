@@ -72,9 +72,7 @@ std::vector<double> starting_forces_N_per_m(const input::Case& config, const sta
 /// Interface::intact of an event that begins with a weakened patch or zone; empty for others.
 std::vector<double> intact_shares(const input::Case& config, const statics::Equilibrium& state,
                                   const mesh::Mesh& mesh) {
-  const bool patched = config.event == interface::EventKind::nucleation &&
-                       config.nucleation.form == interface::NucleationForm::weakened;
-  if (patched) {
+  if (input::is_weakened_patch(config)) {
     auto shares = patch(config.nucleation, mesh);
     for (double& share : shares) share = 1 - share;
     return shares;
@@ -92,22 +90,40 @@ void require_weakening(const input::Case& config, const std::vector<double>& int
   for (std::size_t i = 0; i < laws.size(); ++i)
     if (intact[i] < 1 && interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
       return;
-  throw UserError(
-      "{} = weakened does nothing where friction does not weaken at any node; choose another form",
-      Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"))
+  throw UserError("{} = {} does nothing where friction does not weaken at any node; choose another form",
+                  Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"),
+                  is_forced(config) ? "forced" : "weakened")
       .about("event.kind");
 }
 
 }  // namespace
 
-PerNode static_coefficients(const input::Case& config, const std::vector<double>& of_nodes) {
+PerNode ratios_at_rest(const input::Case& config, const std::vector<double>& of_nodes) {
   return of_nodes.empty() ? PerNode(interface::static_coefficient(config.friction)) : PerNode(of_nodes);
 }
 
-std::vector<double> static_coefficients(const std::vector<interface::FrictionLaw>& laws) {
-  std::vector<double> mu_s;
-  for (const auto& law : laws) mu_s.push_back(interface::static_coefficient(law));
-  return mu_s;
+std::vector<double> ratios_at_rest(const input::Case& config, const mesh::Mesh& mesh) {
+  auto laws = input::friction_at(config, interface_x_m(mesh));
+  if (laws.empty() && config.friction.cohesion_Pa() == 0) return {};
+  laws.resize(mesh.interface_nodes.size(), config.friction);
+  const bool is_cohesive = std::ranges::any_of(laws, [](const auto& law) { return law.cohesion_Pa() > 0; });
+  std::vector<double> ratios;
+  for (const auto& law : laws) ratios.push_back(interface::static_coefficient(law));
+  if (!is_cohesive) return ratios;
+  const auto s = prescribed_tractions(config, mesh);
+  for (std::size_t k = 0; k < laws.size(); ++k)
+    ratios[k] = interface::static_strength_Pa(laws[k], s.p_s_Pa[k]) / s.p_s_Pa[k];
+  return ratios;
+}
+
+double loads_settle_s(const input::Case& config) {
+  if (is_prestressed(config) &&
+      (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0))
+    return infinity;
+  if (starts_by_force(config)) return motion::last_change_s(config.trigger);
+  if (!is_forced(config)) return 0;
+  const auto& n = config.nucleation;
+  return n.reach_m() / n.front_speed_m_per_s + n.weakening_time_s;
 }
 
 motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state,
@@ -116,11 +132,18 @@ motion::Loads starting_loads(const input::Case& config, const statics::Equilibri
   if (is_prestressed(config)) {
     loads.prestress_t_Pa = state.tractions.t_s_Pa;
     loads.prestress_p_Pa = state.tractions.p_s_Pa;
+    loads.prestress_rate = {config.prestress.t_rate_Pa_per_s, config.prestress.p_rate_Pa_per_s};
   }
   loads.trigger = config.trigger;
-  loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, static_coefficients(config, of_nodes),
-                                                        mesh, mesh::tributary_lengths_m(mesh));
+  loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh,
+                                                        mesh::tributary_lengths_m(mesh));
   loads.intact = intact_shares(config, state, mesh);
+  if (is_forced(config)) {
+    for (const auto n : mesh.interface_nodes)
+      loads.weakens_at_s.push_back(from_centre_m(config.nucleation, mesh.x_m[n], mesh.period_m) /
+                                   config.nucleation.front_speed_m_per_s);
+    loads.weakening_time_s = config.nucleation.weakening_time_s;
+  }
   if (!loads.intact.empty())
     require_weakening(config, loads.intact, input::friction_at(config, interface_x_m(mesh)));
   return loads;

@@ -13,14 +13,17 @@
 // How a case's event begins: what is put onto the interface, and where friction is weakened.
 namespace slipfront::run {
 
-/// Coefficients at rest of the nodes; the case's where it has none of their own.
-PerNode static_coefficients(const input::Case& config, const std::vector<double>& of_nodes);
-/// Those of the nodes' laws; empty where they all have the case's.
-std::vector<double> static_coefficients(const std::vector<interface::FrictionLaw>& laws);
+/// t/p at which nodes slip in the state before the event: static coefficients; with a cohesion the strength
+/// under the prescribed pressure over that. @param of_nodes  as below
+PerNode ratios_at_rest(const input::Case& config, const std::vector<double>& of_nodes);
+/// The same of each node; empty where all have the static coefficient of the case.
+std::vector<double> ratios_at_rest(const input::Case& config, const mesh::Mesh& mesh);
 
+/// When the loads of a case's event last change; inf where they go on to.
+double loads_settle_s(const input::Case& config);
 /// Loads of a case's event in the state that it begins with: prescribed tractions, trigger or patch, weakened
 /// nodes.
-/// @param of_nodes  coefficients at rest of the nodes; none where they all have the case's
+/// @param of_nodes  ratios_at_rest
 /// @throws UserError  where a trigger adds nothing, or no node that is weakened has a law that weakens
 motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state,
                              const mesh::Mesh& mesh, const std::vector<double>& of_nodes);

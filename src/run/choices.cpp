@@ -106,12 +106,17 @@ bool root_has_interface_only(const input::Case& config, int n_processes) {
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 
-record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {
+record::StaticState prescribed_tractions(const input::Case& config, const mesh::Mesh& mesh) {
+  const input::Prestress& prestress = config.prestress;
   record::StaticState state;
   state.x_m = interface_x_m(mesh);
   if (!prestress.file.empty()) return input::prestress_at(prestress, state.x_m);
-  state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
   state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
+  state.t_s_Pa.assign(state.x_m.size(),
+                      prestress.t_Pa ? *prestress.t_Pa : traction_before_Pa(config.friction, prestress.p_Pa));
+  if (prestress.t_Pa) return state;
+  const auto laws = input::friction_at(config, state.x_m);
+  for (std::size_t k = 0; k < laws.size(); ++k) state.t_s_Pa[k] = traction_before_Pa(laws[k], prestress.p_Pa);
   return state;
 }
 

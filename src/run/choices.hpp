@@ -53,7 +53,7 @@ bool root_has_interface_only(const input::Case& config, int n_processes);
 
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
-record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);
+record::StaticState prescribed_tractions(const input::Case& config, const mesh::Mesh& mesh);
 
 /// Positions of the nodes of the interface.
 std::vector<double> interface_x_m(const mesh::Mesh& mesh);

@@ -28,7 +28,7 @@ namespace {
 /// Tractions before the event; under a tilt those of the nominal pressure when the weakest node slips.
 record::StaticState expected_tractions(const input::Case& config, const mesh::Mesh& mesh,
                                        const std::vector<interface::FrictionLaw>& laws) {
-  if (is_prestressed(config)) return prescribed_tractions(config.prestress, mesh);
+  if (is_prestressed(config)) return prescribed_tractions(config, mesh);
   double least_mu = infinity;
   for (const auto& law : laws) least_mu = std::min(least_mu, interface::static_coefficient(law));
   const double p_Pa = input::nominal_pressure_Pa(config);

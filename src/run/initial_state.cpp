@@ -33,9 +33,10 @@ std::vector<double> at_all_nodes(const PerNode& values, const mesh::Mesh& mesh) 
 /// What an initial state without motion keeps of friction: the coefficients at rest.
 std::string strengths_text(const input::Case& config) {
   auto at_rest = config;
-  if (!config.friction_along_x.varies()) at_rest.friction = interface::Coulomb {
-      interface::static_coefficient(config.friction)
-    };
+  if (!config.friction_along_x.varies()) {
+    at_rest.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
+    at_rest.friction.parameter(interface::FrictionLaw::cohesion_key) = config.friction.cohesion_Pa();
+  }
   std::string text;
   for (const auto& entry : input::entries_of(at_rest))
     if (input::table_of(entry.key) == "friction") text += input::toml_text(entry.get(at_rest)) + "\n";
@@ -54,9 +55,14 @@ void InitialState::release_displacements(const statics::Equilibrium* but) {
 
 std::string initial_state_key(const input::Case& config) {
   using input::Stage;
-  if (is_prestressed(config))
+  if (is_prestressed(config)) {
+    const bool t_follows =
+        config.friction.has_state() && config.prestress.file.empty() && !config.prestress.t_Pa;
     return text_of_stages(config, {Stage::mesh, Stage::tractions}) +
-           (config.friction_along_x.varies() ? strengths_text(config) : "");
+           (t_follows ? text_of_stages(config, {Stage::motion}) : "") +
+           (config.friction_along_x.varies() || config.friction.cohesion_Pa() > 0 ? strengths_text(config)
+                                                                                  : "");
+  }
   // Nodes at the edges slip during a ramp, by the law itself.
   if (config.loading.method == statics::LoadingMethod::ramp)
     return text_of_stages(config, {Stage::mesh, Stage::statics, Stage::motion});
@@ -174,9 +180,9 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
-  meshes.mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
+  meshes.mu_s = ratios_at_rest(config, meshes.plate);
   if (!is_prestressed(config)) return meshes;
-  const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
+  const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate));
   starting_loads(config, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
   return meshes;
 }
@@ -222,10 +228,10 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_cells = n_cells_of(initial.mesh) + (initial.base ? n_cells_of(*initial.base) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   initial.mu_s = std::move(meshes.mu_s);
-  const auto mu_s = static_coefficients(config, initial.mu_s);
+  const auto mu_s = ratios_at_rest(config, initial.mu_s);
   if (is_prestressed(config)) {
     initial.prescribed = true;
-    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
+    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config, initial.mesh),
                                           initial.base ? &*initial.base : nullptr);
     initial.spontaneous = initial.common;
     initial.critical_shear_m = nan;
@@ -276,7 +282,7 @@ std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes&
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (meshes.base) base.emplace(statics::ElasticBody{*meshes.base, base_material});
-  const auto mu_s = static_coefficients(config, meshes.mu_s);
+  const auto mu_s = ratios_at_rest(config, meshes.mu_s);
   const statics::Statics statics({meshes.plate, config.material}, base, config.loading,
                                  at_all_nodes(mu_s, meshes.plate),
                                  interface::static_coefficient_key(config.friction));

@@ -114,8 +114,11 @@ void add_lengths(const input::Case& config, Notes& notes) {
   };
   if (interface::is_at_edge(config.event)) add_short("event.trigger_zone_m", config.trigger.zone_m);
   if (config.event == interface::EventKind::nucleation)
-    add_short("2 nucleation.half_length_m + taper_m",
-              2 * config.nucleation.half_length_m + config.nucleation.taper_m);
+    add_short(config.nucleation.profile == interface::NucleationProfile::smooth
+                  ? "2 nucleation.half_length_m"
+                  : "2 nucleation.half_length_m + taper_m",
+              2 * config.nucleation.half_length_m +
+                  (config.nucleation.reach_m() - config.nucleation.half_length_m));
   if (config.event == interface::EventKind::nucleation &&
       2 * config.nucleation.half_length_m > config.plate.width_m)
     notes.push_back(fmt::format(
@@ -181,7 +184,7 @@ void add_free_sides(const input::Case& config, Notes& notes) {
                        (has_base_body(config) && config.base.plate.sides == mesh::Sides::free);
   const auto& t_Pa = config.prestress.table.rows.t_s_Pa;
   const bool is_sheared =
-      config.prestress.file.empty() ? config.prestress.t_Pa != 0 : t_Pa.front() != 0 || t_Pa.back() != 0;
+      config.prestress.file.empty() ? config.prestress.t_Pa != 0.0 : t_Pa.front() != 0 || t_Pa.back() != 0;
   if (is_free && is_sheared)
     notes.emplace_back(
         "sides are free, but t is prescribed up to the corners: free sides bear no shear, so that this is no "

@@ -23,8 +23,8 @@ using interface::EventKind;
 
 stability::NodeBefore node_before(const interface::FrictionLaw& law, double t_Pa, double p_Pa) {
   return {t_Pa,
-          interface::static_coefficient(law) * p_Pa,
-          interface::kinetic_coefficient(law) * p_Pa,
+          interface::static_strength_Pa(law, p_Pa),
+          interface::kinetic_coefficient(law) * p_Pa + law.cohesion_Pa(),
           interface::weakening_slip_m(law),
           p_Pa,
           interface::state_response(law, 0)};
@@ -54,8 +54,7 @@ std::vector<Placed> nodes_inside(const input::Case& config, const statics::Equil
 std::optional<double> trigger_length_m(const input::Case& config) {
   const auto& n = config.nucleation;
   if (interface::is_at_edge(config.event)) return config.trigger.zone_m;
-  // The taper counts half.
-  if (config.event == EventKind::nucleation) return 2 * n.half_length_m + n.taper_m;
+  if (config.event == EventKind::nucleation) return n.length_m();
   return {};
 }
 
@@ -239,11 +238,11 @@ RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilib
 
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) {
   if (is_prestressed(config))
-    return rupture_outlook(
-        config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)),
-        mesh::tributary_lengths_m(meshes.plate));
+    return rupture_outlook(config,
+                           statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate)),
+                           mesh::tributary_lengths_m(meshes.plate));
   const double p_Pa = input::nominal_pressure_Pa(config);
-  const double strength_Pa = interface::static_coefficient(config.friction) * p_Pa;
+  const double strength_Pa = interface::static_strength_Pa(config.friction, p_Pa);
   auto o =
       outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}}, interface_x_m(meshes.plate));
   o.nominal = true;

@@ -58,6 +58,19 @@ WaveSpeeds wave_speeds(const solid::Material& m) {
           solid::rayleigh_speed_m_per_s(m)};
 }
 
+namespace {
+
+/// Of the laws of the nodes, or where these have none of the one of all.
+template <class Of>
+PerNode at_nodes(Of of, const interface::FrictionLaw& of_all,
+                 const std::vector<interface::FrictionLaw>& laws) {
+  std::vector<double> of_each;
+  for (const auto& law : laws) of_each.push_back(std::invoke(of, law));
+  return of_each.empty() ? PerNode(std::invoke(of, of_all)) : PerNode(std::move(of_each));
+}
+
+}  // namespace
+
 fronts::FrontOptions front_options(const input::Case& config, const InitialState& initial) {
   fronts::FrontOptions o;
   o.l_star_m = config.fronts.l_star_m;
@@ -67,7 +80,9 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
   o.min_length_m = config.fronts.min_length_m;
   o.crack_share = config.fronts.crack_share;
   o.pulse_share = config.fronts.pulse_share;
-  o.mu_s = static_coefficients(config, initial.mu_s);
+  const auto laws = input::friction_at(config, initial.common.tractions.x_m);
+  o.mu_s = at_nodes(interface::static_coefficient, config.friction, laws);
+  o.cohesion_Pa = at_nodes(&interface::FrictionLaw::cohesion_Pa, config.friction, laws);
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
@@ -84,7 +99,7 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
   }
   if (config.event == interface::EventKind::nucleation) {
     const auto& n = config.nucleation;
-    const double patch_reach = n.half_length_m + n.taper_m;
+    const double patch_reach = n.reach_m();
     const double reach = patch_reach + config.fronts.trigger_margin_m;
     o.exclude_from_m = n.x_m - reach;
     o.exclude_to_m = n.x_m + reach;
@@ -160,9 +175,9 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
                              motion::EventOutput* output, motion::Observers more) {
   const motion::EventSetup setup = {
       .state = event_state(config, initial),
-      .mu_s = static_coefficients(config, initial.mu_s),
+      .mu_s = ratios_at_rest(config, initial.mu_s),
       .waves = {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
-      .trigger = starts_by_force(config) ? config.trigger : interface::Trigger{.ramp_s = 0},
+      .loads_settle_s = loads_settle_s(config),
       .time = config.time,
       .sampling = {config.output.history_interval_s, config.output.energy_interval_s,
                    snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s},

@@ -153,7 +153,7 @@ Json prestress_json(const input::Prestress& prestress) {
   const bool is_uniform = prestress.file.empty();
   return {{"stress_xx_Pa", Json()},
           {"stress_yy_Pa", is_uniform ? Json(-prestress.p_Pa) : Json()},
-          {"stress_xy_Pa", is_uniform ? Json(prestress.t_Pa) : Json()}};
+          {"stress_xy_Pa", is_uniform ? optional_json(prestress.t_Pa) : Json()}};
 }
 
 /// Columns are of nodes; what a rank has sent counts as its messages and bytes.

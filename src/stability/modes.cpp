@@ -107,7 +107,9 @@ Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s,
     s.state_rate_per_s = state->V_m_per_s / state->d_c_m;
   }
   s.pressure_Pa = pressure_Pa;
-  s.relaxed = regularisation.relaxed;
+  // The strength does not follow the pressure: it does so at no rate.
+  s.relaxed = regularisation.relaxed == interface::Relaxed::initial_pressure ? interface::Relaxed::pressure
+                                                                             : regularisation.relaxed;
   s.relaxation_rate_per_s = interface::relaxation_rate_per_s(regularisation, speed_m_per_s);
   return s;
 }

@@ -21,7 +21,7 @@ CASES = [
     ("[plate]\nelement_size_mm = 5e-3\n", "element_size_mm", ["element_size_m?"]),
     ('[plate]\nwidth_m = "0.2"\n', "width_m", ["number", "width_m = 0.2"]),
     ('[friction]\nlaw = "coulomb"\nmu_k = 0.6\n', "mu_k", ["velocity_weakening", "remove"]),
-    ("[friction]\nmu_s = 0.5\nmu_k = 0.6\n", "mu_s", ["mu_k", "mu_s"]),
+    ("[friction]\nmu_s = 0.5\ncohesion_Pa = 1e4\n", "cohesion_Pa", ["loading.method = prestress", "remove"]),
     ("[plate]\nwidth_m = = 0.2\n", "width_m", ["TOML"]),
     ("[plate]\nelement_size_m = 3e-3\n", "element_size_m", ["nearest", "0.00"]),
 ]
@@ -49,7 +49,7 @@ def test_place_is_the_path_as_it_was_given(program, write_case):
     "override, words",
     [
         ("friction.mu_kk=1.0", ["unknown key", "friction.mu_k?"]),
-        ("friction.mu_k=2", ["mu_s"]),
+        ("friction.mu_k=200", ["at most 100"]),
         ("plate.element_size_m=3e-3", ["nearest"]),
         ("", ["of the form key=value"]),
     ],

@@ -10,7 +10,7 @@ COARSE = "[plate]\nelement_size_m = 5e-3\n"
 SQUARE = COARSE + 'corner = "none"\n'
 PRESSED = '[loading]\nmethod = "prestress"\n[prestress]\nt_Pa = 2.1e6\np_Pa = 5e6\n[event]\nkind = "none"\n'
 TABLED = PRESSED.replace("t_Pa = 2.1e6\np_Pa = 5e6\n", 'file = "table.csv" # here\n')
-WEAKENING = '[friction]\nlaw = "slip_weakening"\nmu_s = 0.6\nmu_k = 0.599\n'
+WEAKENING = '[friction]\nlaw = "slip_weakening"\nmu_s = 0.6\nmu_k = 99.9\n'
 STEEL = (
     '[base]\nkind = "body"\nyoungs_modulus_Pa = 2e11\npoissons_ratio = 0.3\ndensity_kg_per_m3 = 7800\n'
     "stiffness_damping_s = 1e-7\n"

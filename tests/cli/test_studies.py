@@ -117,7 +117,7 @@ def test_a_run_that_blows_up_has_no_fronts(program, converge, tmp_path):
         (("--element-sizes", "5e-3,2.5e-3,-1e-3"), "'5e-3,2.5e-3,-1e-3' is no number greater than 0"),
         (("--tolerance", "nan"), "--tolerance: 'nan' is no number greater than 0"),
         (("--threads", "0"), "--threads: '0' is no whole number greater than 0"),
-        (("--set", "friction.mu_k=9"), "mu_k must be at most mu_s"),
+        (("--set", "friction.mu_k=900"), "it must be at least 0 and at most 100"),
         (("--set", "friction.mk=9"), "did you mean friction.mu_k?"),
     ],
 )

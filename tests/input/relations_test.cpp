@@ -32,9 +32,18 @@ const std::string square = "[plate]\ncorner = \"none\"\n";
 
 const Contradiction wrong_cases[] = {
     // Friction
-    {"Weakening", "[friction]\nmu_s = 0.5 # here\nmu_k = 0.6\n"},
-    {"WeakeningFromTheDefault", "[friction]\nalpha_m2_per_s2 = 0.2\nmu_k = 1.4 # here\n"},
-    {"WeakeningOverridden", "[friction]\nmu_s = 0.5\nmu_k = 0.4\n", {{"friction.mu_k", "0.7"}}},
+    {"FrictionTable", "[friction]\nlaw = \"slip_table\"\ntable_mu = [0.6, 0.3] # here\n"},
+    {"FrictionTableOverridden",
+     "[friction]\nlaw = \"slip_table\"\n",
+     {{"friction.table_slip_m", "[0, 1e-6]"}}},
+    {"CohesionUnderATilt", "[friction]\ncohesion_Pa = 1e4 # here\n"},
+    {"StateGivenUnderATilt", "[friction]\nlaw = \"rate_and_state_aging\"\ntheta_i_s = 1 # here\n"},
+    {"StateSlipRateAndTraction",
+     at_rest + square + "[friction]\nlaw = \"rate_and_state_aging\"\nV_i_m_per_s = 1e-9\n",
+     {{"friction.theta_i_s", "1"}}},
+    {"ForcedPatchWithoutASpeed", patch + square, {{"nucleation.form", "forced"}}},
+    {"StateAndTractionWithoutASlipRate",
+     at_rest + square + "[friction]\nlaw = \"rate_and_state_aging\"\ntheta_i_s = 1e12 # here\n"},
     {"RandomKey", "[friction]\nlaw = \"coulomb\"\nrandom_key = \"mu_k\" # here\n"},
     {"RandomKeyOfAnotherLaw", "[friction]\nrandom_key = \"mu_k\"\n", {{"friction.law", "coulomb"}}},
     {"RegularisationWithoutScale", "[friction]\nregularisation = \"strength\" # here\n"},
@@ -139,7 +148,7 @@ TEST(Relations, AreNotAskedOfTablesAlone) {
   EXPECT_EQ(tables.plate.height_m, 2e-4);
   EXPECT_EQ(tables.plate.relief_length_m, 1e-5);  // by the width's rule
   EXPECT_THROW(parse_tables({{"plate.width_m", "4e-4"}, {"plate.element_size_m", "1e-3"}}), UserError);
-  EXPECT_THROW(parse_tables({{"friction.mu_k", "9"}}), UserError);
+  EXPECT_THROW(parse_tables({{"friction.law", "slip_table"}, {"friction.table_mu", "[1, 0]"}}), UserError);
 }
 
 TEST(Relations, AreRefusedWithThePlaceAndTheKeysAtFault) {

@@ -32,6 +32,9 @@ auto members(const Struct& s) {
   } else if constexpr (n == 5) {
     const auto& [a, b, c, d, e] = s;
     return std::tuple(a, b, c, d, e);
+  } else if constexpr (n == 6) {
+    const auto& [a, b, c, d, e, f] = s;
+    return std::tuple(a, b, c, d, e, f);
   } else if constexpr (n == 7) {
     const auto& [a, b, c, d, e, f, g] = s;
     return std::tuple(a, b, c, d, e, f, g);
@@ -55,8 +58,8 @@ auto members(const Base& base) {
   return std::tuple(kind, members<12>(plate), members<5>(material));
 }
 auto members(const Prestress& p) {
-  const auto& [a, b, c, table] = p;
-  return std::tuple(a, b, c, table.text);
+  const auto& [a, b, c, table, e, f] = p;
+  return std::tuple(a, b, c, table.text, e, f);
 }
 auto members(const FrictionAlongX& f) {
   const auto& [a, table, c, d, e, g, h] = f;
@@ -71,6 +74,7 @@ auto members(const interface::FrictionLaw& friction) {
     if constexpr (requires { law.lists(); })
       for (const auto& list : law.lists())
         values.insert(values.end(), (law.*list.member).begin(), (law.*list.member).end());
+    values.push_back(friction.cohesion_Pa());
     return std::pair(std::string(friction.name()), values);
   });
 }
@@ -79,7 +83,7 @@ auto members(const Case& c) {
                regularisation, contact, event, trigger, nucleation, time, fronts, output, probes] = c;
   return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x), tip,
-                    members<4>(regularisation), contact, event, members<5>(trigger), members<5>(nucleation),
+                    members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
                     members<9>(time), members<7>(fronts), members<5>(output), members<4>(probes));
 }
 
@@ -106,7 +110,7 @@ const std::string changed_text =
     " random_share = 0.05, random_correlation_length_m = 6e-3, random_seed = 7}\n"
     "contact.algorithm = 'predictor_corrector'\n"
     "event = {kind = 'right', trigger_form = 'raised', trigger_zone_m = 7e-3, trigger_amount = 2.5,"
-    " trigger_ramp_s = 0, trigger_duration_s = 3e-5}\n"
+    " trigger_ramp = 'smooth', trigger_ramp_s = 0, trigger_duration_s = 3e-5}\n"
     "time = {step_factor = 1.5, allow_unstable = true, stepper = 'plain', precision = 'single', "
     "interface_rows = 7,"
     " interface_substeps = 11, local_steps = false, end_s = 1e-4, quiet_s = inf}\n"
@@ -143,7 +147,7 @@ Case changed_case() {
   c.regularisation = {interface::Relaxed::strength, 4e-6, 0.5, 2e-6};
   c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
-  c.trigger = {interface::TriggerForm::raised, 7e-3, 2.5, 0, 3e-5};
+  c.trigger = {interface::TriggerForm::raised, 7e-3, 2.5, interface::Ramp::smooth, 0, 3e-5};
   c.time = {1.5,  true,    motion::StepperKind::plain, motion::Precision::single_precision, 7, 11, false,
             1e-4, infinity};
   c.fronts = {1e-3, fronts::SpeedInterval::approach, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
@@ -160,10 +164,15 @@ Case changed_prestress() {
   c.loading = {};
   c.loading.method = statics::LoadingMethod::prestress;
   c.loading.shear_speed_over_c_L = 0;
-  c.prestress = {1e6 / 3, 2e6 / 7, ""};
+  c.prestress = {1e6 / 3, 2e6 / 7, "", {}, 3e8, -2e8};
   c.event = interface::EventKind::nucleation;
   c.trigger = {.ramp_s = 0, .duration_s = 3e-5};
-  c.nucleation = {interface::NucleationForm::overstress, 0.1 / 3, 7e-3, 0, -2e5};
+  c.friction.parameter("cohesion_Pa") = 3e4;
+  c.nucleation = {.form = interface::NucleationForm::overstress,
+                  .profile = interface::NucleationProfile::smooth,
+                  .x_m = 0.1 / 3,
+                  .half_length_m = 7e-3,
+                  .overstress_Pa = -2e5};
   return c;
 }
 
@@ -175,7 +184,7 @@ TEST(Schema, DefaultsReadBackFromToml) {
 TEST(Schema, TheKeysStandForTheirMembers) {
   const Case changed = changed_case();
   for (const Entry& entry : entries_of(changed))
-    if (entry.key != "friction.law" && has_value(entry, changed)) {
+    if (entry.key != "friction.law" && entry.key != "friction.cohesion_Pa" && has_value(entry, changed)) {
       EXPECT_NE(toml_text(entry.get(changed)), toml_text(entry.get(Case{})))
           << entry.key << " is not changed";
     }
@@ -201,6 +210,16 @@ TEST(Schema, PrestressAndNucleationReadBackFromToml) {
   table.prestress = {};
   table.prestress.file = "table.csv";
   expect_equal(parsed(to_toml(table)), table);
+
+  Case forced = uniform;
+  forced.trigger = {};
+  forced.nucleation = {.form = interface::NucleationForm::forced,
+                       .x_m = 0.1 / 3,
+                       .half_length_m = 7e-3,
+                       .taper_m = 1e-3,
+                       .front_speed_m_per_s = 300,
+                       .weakening_time_s = 1e-6};
+  expect_equal(parsed(to_toml(forced)), forced);
 }
 
 TEST(Schema, RoundedCornersReadBackFromToml) {
@@ -243,7 +262,7 @@ TEST(Schema, ForcesReadBackFromToml) {
 TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
   const std::string nucleated = to_toml(changed_prestress());
   const Case left = parsed(nucleated, {{"event.kind", "left"}});
-  EXPECT_TRUE(members<5>(left.nucleation) == members<5>(Case{}.nucleation));
+  EXPECT_TRUE(members<8>(left.nucleation) == members<8>(Case{}.nucleation));
   EXPECT_EQ(left.event, interface::EventKind::left);
   const Case table = parsed(nucleated, {{"prestress.file", "t.csv"}});
   EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);
@@ -374,7 +393,7 @@ constexpr Refused refused[] = {
     {"[event]\nkind = \"nucleation\"\ntrigger_ramp_s = 0\n", "c.toml:3: event.trigger_ramp_s",
      ", or event.kind = nucleation and nucleation.form = overstress"},
     {"[friction]\nrelaxation_time_s = 1e-6\n", "c.toml:2: friction.relaxation_time_s",
-     "friction.regularisation other than none"},
+     "friction.regularisation = strength or pressure"},
     {"[plate]\nfillet_radius_m = 1e-3\n", "c.toml:2: plate.fillet_radius_m", "plate.corner = fillet"},
     {"[plate]\ncorner = \"none\"\nrelief_depth_m = 1e-3\n", "c.toml:3: plate.relief_depth_m",
      "plate.corner = relief"},

@@ -131,7 +131,8 @@ TEST_F(Table, ErrorsNameFileAndLine) {
                    "prestress.file: " + file_.string() + error);
   for (const auto& [text, error] : {
            Wrong{"x,mu_s\n",
-                 ":1: the first line must be the header x_m and any of mu_s, mu_k, alpha_m2_per_s2"},
+                 ":1: the first line must be the header x_m and any of mu_s, mu_k, alpha_m2_per_s2, "
+                 "cohesion_Pa"},
            {"x_m\n0\n", ":1: the first line must be the header"},
            {"x_m,d_c_m\n", ":1: has a column \"d_c_m\"; the first line must be the header"},
            {"x_m,mu_s,mu_s\n", ":1: has the column mu_s twice"},
@@ -140,7 +141,7 @@ TEST_F(Table, ErrorsNameFileAndLine) {
            {"x_m,mu_k\n1e7,0.5\n", ":2: x_m is 10000000; its magnitude must be at most 1e+06"},
            {"x_m,mu_k\n0,-0.5\n", ":2: mu_k is -0.5; it must be at least 0 and at most 100"},
            {"x_m,mu_k\n0,1e-30\n", ":2: mu_k is 1e-30; its magnitude must be at least 1e-18"},
-           {"x_m,mu_k\n0,1.31\n", ":2: mu_k must be at most mu_s"},
+           {"x_m,cohesion_Pa\n0,-1\n", ":2: cohesion_Pa is -1; it must be at least 0"},
            {"x_m,mu_k\n", ": holds no rows"},
        })
     expect_message(error_of([&, &text = text] { friction(text); }),

@@ -30,6 +30,18 @@ TEST(Nucleation, WithoutTaperItIsAStep) {
   EXPECT_EQ(nucleation_profile(step, 0.2201), 0);
 }
 
+TEST(Nucleation, SmoothProfileIsThatOfTPV101) {
+  Nucleation smooth = patch;
+  smooth.profile = NucleationProfile::smooth;
+  EXPECT_EQ(nucleation_profile(smooth, 0.2), 1);
+  EXPECT_NEAR(nucleation_profile(smooth, 0.21), std::exp(-1.0 / 3), 1e-14);  // 1/(1 - 4) at half the length
+  EXPECT_LT(nucleation_profile(smooth, 0.2 + 0.01999), 1e-200);
+  EXPECT_EQ(nucleation_profile(smooth, 0.22), 0);
+  EXPECT_EQ(smooth.reach_m(), 0.02);
+  EXPECT_NEAR(nucleation_profile(smooth, 0.2 + 0.5 * smooth.length_m()), 0.5, 1e-12);
+  EXPECT_NEAR(nucleation_profile(patch, 0.2 + 0.5 * patch.length_m()), 0.5, 1e-12);
+}
+
 TEST(Nucleation, ThePatchRepeatsWithThePlate) {
   Nucleation edge = patch;
   edge.x_m = 0.01;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "interface/friction/coulomb.hpp"
+#include "interface/friction/exponential_slip_weakening.hpp"
 #include "interface/friction/rate_and_state.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/table.hpp"
@@ -26,14 +27,25 @@ inline double weakening_mu(double v_m_per_s) {
   return 0.6 + 0.7 * std::exp(-v_m_per_s * std::sqrt(7.0));
 }
 
-/// All laws under both algorithms, without and with a delayed response.
+inline FrictionLaw strengthening() {
+  return VelocityWeakening{.mu_s = 0.6, .mu_k = 0.9, .alpha_m2_per_s2 = 1e-6};
+}
+inline FrictionLaw cohesive() {
+  FrictionLaw law = SlipWeakening{};
+  law.parameter(FrictionLaw::cohesion_key) = 2e4;
+  return law;
+}
+
+/// All laws under both algorithms, with an immediate and a delayed response, or none, to the pressure.
 template <class F>
 void for_each_model(F&& f) {
   for (const FrictionLaw& law :
        {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}), FrictionLaw(SlipWeakening{}),
-        FrictionLaw(SlipWeakeningHealing{}), FrictionLaw(SlipTable{}), FrictionLaw(SlipRateTable{})})
+        FrictionLaw(SlipWeakeningHealing{}), FrictionLaw(ExponentialSlipWeakening{}),
+        FrictionLaw(SlipTable{}), FrictionLaw(SlipRateTable{}), strengthening(), cohesive()})
     for (const auto algorithm : {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector}) {
-      f(ContactModel{law, {}, algorithm});
+      for (const Relaxed relaxed : {Relaxed::none, Relaxed::initial_pressure})
+        f(ContactModel{law, {relaxed}, algorithm});
       for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure})
         for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
           f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});

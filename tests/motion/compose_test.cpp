@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "examples/compose/exponential_weakening.hpp"
+#include "examples/compose/gradual_weakening.hpp"
 #include "examples/compose/rupture.hpp"
 #include "interface/node_laws.hpp"
 
@@ -54,14 +54,14 @@ TEST(Compose, ShearThatIsTakenAwayStopsTheRupture) {
 }
 
 TEST(Compose, ALawOfOnesOwnActsAsOneOfTheRegistry) {
-  const ExponentialWeakening law;
+  const GradualWeakening law;
   const auto mu = law.evaluator();
   EXPECT_DOUBLE_EQ(mu(0.0, 0.0), law.mu_s);
-  EXPECT_DOUBLE_EQ(mu(0.0, law.slip_scale_m), law.mu_k + (law.mu_s - law.mu_k) / std::exp(1.0));
-  const auto in_lanes = interface::in_lanes(law);
+  EXPECT_DOUBLE_EQ(mu(0.0, law.slip_scale_m), law.mu_k + (law.mu_s - law.mu_k) / 4);
+  const auto in_lanes = interface::in_lanes(interface::FrictionLaw(law), law);
   const SimdVector zero{};
   EXPECT_DOUBLE_EQ(in_lanes.mu(zero, zero + law.slip_scale_m)[0], mu(0.0, law.slip_scale_m));
-  EXPECT_EQ(interface::FrictionLaw(law).name(), "exponential_weakening");
+  EXPECT_EQ(interface::FrictionLaw(law).name(), "gradual_weakening");
   const auto friction = without_registry(law);
   EXPECT_EQ(interface::static_coefficient(friction), law.mu_s);
   EXPECT_EQ(interface::kinetic_coefficient(friction), law.mu_k);

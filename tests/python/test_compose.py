@@ -198,7 +198,7 @@ def test_threads_and_calls_do_not_change_the_motion():
         ),
         (lambda: slipfront.Body(slipfront.Mesh(**PLATE), E=1), "did you mean material.youngs_modulus_Pa?"),
         (lambda: slipfront.Interface(law="glue"), 'friction.law is "glue"; it must be one of'),
-        (lambda: slipfront.Interface(mu_s=0.1), "mu_k must be at most mu_s"),
+        (lambda: slipfront.Interface(law="slip_table", table_mu=[0.6]), "must be of one length"),
         (lambda: slipfront.Interface(contact="penalty"), 'contact.algorithm is "penalty"'),
         (lambda: stepper(step_factor=2), "time.step_factor is 2, beyond the stable step"),
         (lambda: stepper(end_s=1), "time.end_s does nothing here"),

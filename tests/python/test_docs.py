@@ -58,7 +58,7 @@ def test_every_law_has_its_page_its_row_and_its_place():
     contents = (ROOT / "docs/_toc.yml").read_text(encoding="utf-8")
     assert laws
     for law in laws:
-        page = "table" if law.endswith("_table") else re.sub("(rate_and_state)_.*", r"\1", law)
+        page = "table" if law.endswith("_table") else re.sub("(rate_and_state|slip_weakening)_.*", r"\1", law)
         assert f"`{law}`" in table and f"({page}.md)" in table
         assert f"docs/friction/{page}\n" in contents
         assert f"`{law}`" in (ROOT / f"docs/friction/{page}.md").read_text(encoding="utf-8")

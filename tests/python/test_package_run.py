@@ -80,7 +80,7 @@ def test_the_resolved_case_runs_again(tmp_path):
 
 @pytest.mark.parametrize(
     "key, value",
-    [("friction.mu_j", 0.8), ("friction.mu_k", 9), ("friction.law", "glue"), ("plate.width_m", True)],
+    [("friction.mu_j", 0.8), ("friction.mu_k", 900), ("friction.law", "glue"), ("plate.width_m", True)],
 )
 def test_errors_are_those_of_the_program(tmp_path, key, value):
     case = write_case(tmp_path)
@@ -493,6 +493,29 @@ law = "slip_rate_table"
 mu_factor = 0.9
 table_slip_rate_m_per_s = [0.0, 0.2, 1.0]
 table_mu = [0.7, 0.4, 0.3]
+""",
+    "forced": UNIFORM.replace('event.kind = "left"', 'event.kind = "nucleation"')
+    + """
+[friction]
+law = "slip_weakening_exponential"
+mu_s = 0.7
+mu_k = 0.2
+d_c_m = 5e-6
+cohesion_Pa = 1e5
+regularisation = "initial_pressure"
+[nucleation]
+form = "forced"
+profile = "smooth"
+front_speed_m_per_s = 500.0
+weakening_time_s = 1e-6
+""",
+    "state": ('event.trigger_ramp = "smooth"\n' + UNIFORM).replace(
+        "t_Pa = 5e5", "t_rate_Pa_per_s = 1e9\np_rate_Pa_per_s = 1e9"
+    )
+    + """
+[friction]
+law = "rate_and_state_aging"
+theta_i_s = 0.1
 """,
     "strong": UNIFORM
     + """

@@ -15,6 +15,7 @@
 #include "cases.hpp"
 #include "input/schema.hpp"
 #include "interface/friction/coulomb.hpp"
+#include "interface/friction/rate_and_state.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "reference.hpp"
 
@@ -114,6 +115,73 @@ TEST(ProblemA, ArrivalsConvergeToThoseOfAnotherCode) {
             1e-9 * energies.back().prestress_work);
   EXPECT_GT(energies.back().prestress_work, 0);
   EXPECT_LT(energies.back().boundary_work, 0);
+}
+
+TEST(PrestressColumn, TractionsGrowLinearlyUpToTheStrength) {
+  auto c = column(mesh::Top::absorbing);
+  c.friction = interface::Coulomb { 0.5 };
+  c.friction.parameter("cohesion_Pa") = 0.1e6;
+  c.prestress = {0.4e6, 1e6, "", {}, 2e10, -1e10};
+  c.time.end_s = 12e-6;
+  const auto result = run_case(c);
+  // 0.4 + 0.02 s = 0.1 + 0.5 (1 - 0.01 s), s in us
+  const double slips_s = 8e-6;
+  const auto& h = result.event.history;
+  for (std::size_t k = 0; k < h.time_s.size(); ++k) {
+    EXPECT_NEAR(h.p_Pa[4 * k], 1e6 - 1e10 * h.time_s[k], 1);
+    const double drag_Pa = std::min(0.4e6 + 2e10 * h.time_s[k], 0.1e6 + 0.5 * (1e6 - 1e10 * h.time_s[k]));
+    EXPECT_NEAR(h.t_Pa[4 * k], drag_Pa, 1);
+  }
+  ASSERT_EQ(result.event.record.onsets.size(), 4U);
+  for (const auto& onset : result.event.record.onsets) EXPECT_NEAR(onset.time_s, slips_s, 1e-9);
+  const auto& energies = result.event.energies;
+  EXPECT_GT(energies.back().prestress_work, 0);
+  EXPECT_LT(std::abs(record::imbalance_J_per_m(energies.back(), energies.front())),
+            1e-9 * energies.back().prestress_work);
+}
+
+TEST(PrestressColumn, TwoOfTractionSlipRateAndStateGiveTheThird) {
+  auto c = column(mesh::Top::absorbing);
+  interface::RateAndStateAging law;
+  c.prestress.p_Pa = 5e6;
+  const auto t_s = [&] {
+    c.friction = law;
+    return make_initial_state(c, go_on).common.tractions.t_s_Pa.front();
+  };
+  EXPECT_DOUBLE_EQ(t_s(), 5e6 * (0.6 - 0.008 * std::log(1e-3)));  // steady sliding at 1e-9 m/s
+  // Problem R-A: theta_i = 0.159228803985 s at 1e-9 m/s is tau = 2.65 MPa.
+  law.theta_i_s = 0.159228803985;
+  EXPECT_NEAR(t_s(), 2.65e6, 1e-4);
+  const std::string text =
+      "[plate]\ncorner = \"none\"\n[loading]\nmethod = \"prestress\"\n[event]\nkind = "
+      "\"none\"\n[prestress]\np_Pa = 5e6\nt_Pa = 2.65e6\n[friction]\nlaw = "
+      "\"rate_and_state_aging\"\ntheta_i_s = 0.159228803985\n";
+  EXPECT_NEAR(input::parse_case(text, "c.toml").friction.parameter("V_i_m_per_s"), 1e-9, 1e-18);
+  // The state before the event is the one given, whatever t: it slides at the V_i that follows.
+  c.friction = input::parse_case(text, "c.toml").friction;
+  c.prestress.t_Pa = 2.65e6;
+  c.time.end_s = 1e-6;
+  const auto result = run_case(c);
+  EXPECT_NEAR(result.event.history.slip_rate_m_per_s.back(), 1e-9, 1e-12);
+}
+
+/// Far faster than waves, so that no node knows of its neighbours.
+TEST(Nucleation, AForcedPatchGrowsAtItsSpeed) {
+  auto c = problem_a(1e-3);
+  c.nucleation.form = NucleationForm::forced;
+  c.nucleation.front_speed_m_per_s = 1e5;
+  c.nucleation.weakening_time_s = 0.5e-6;
+  c.time.end_s = 1e-6;
+  const auto result = run_case(c);
+  // mu = 0.6 - 0.3 f reaches t0/p0 = 0.42 at f = 0.6.
+  std::size_t n = 0;
+  for (const auto& onset : result.event.record.onsets) {
+    const double r_m = std::abs(result.event.record.x_m[onset.node] - 0.2);
+    if (r_m > (1 - 1e-9) * c.nucleation.half_length_m) continue;
+    EXPECT_NEAR(onset.time_s, r_m / 1e5 + 0.6 * 0.5e-6, 1e-9) << r_m;
+    ++n;
+  }
+  EXPECT_EQ(n, 2 * std::lround(c.nucleation.half_length_m / 1e-3) - 1);
 }
 
 TEST(Nucleation, AWeakenedPatchSlipsAtOnceWhereItsStrengthIsBelowTheTraction) {
@@ -292,6 +360,7 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
   EXPECT_DOUBLE_EQ(state.common.tractions.p_s_Pa[3], 1.75e6);
   EXPECT_DOUBLE_EQ(state.common.peak_ratio, 0.15);
   c.prestress.file.clear();
+  c.prestress.t_Pa = 0;
   EXPECT_NE(initial_state_key(c), key);
   const auto uniform = initial_state_key(c);
   c.prestress.t_Pa = 1;

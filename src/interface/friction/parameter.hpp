@@ -27,11 +27,6 @@ struct ListParameter {
   const char* help;
 };
 
-/// What is wrong with a law whose coefficient is to fall from mu_s to mu_k, and rises.
-inline Message kinetic_above_static() {
-  return Message("{1:leaf} must be at most {0:leaf}", Key("friction.mu_s"), Key("friction.mu_k"));
-}
-
 /// A state variable of a law: a number at each node, remembered from one contact update to the next.
 struct LawState {
   const char* name;  ///< in results; it ends with the unit

@@ -52,19 +52,24 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
   double f0 = 0.6;
   double V0_m_per_s = 1e-6;
   double V_i_m_per_s = 1e-9;
+  double theta_i_s = 0;  ///< 0: not given
 
   static constexpr auto parameters() {
     using L = RateAndState;
-    std::array<Parameter<L>, weakens_strongly ? 8 : 6> all = {
+    std::array<Parameter<L>, weakens_strongly ? 9 : 7> all = {
         {{"a", &L::a, 1e-6, 10, "direct effect of the slip rate"},
          {"b", &L::b, 1e-6, 10, "effect of the state"},
          {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which the state changes"},
          {"f0", &L::f0, 0, 100, "coefficient of steady sliding at V0"},
          {"V0_m_per_s", &L::V0_m_per_s, 1e-12, 1e3, "reference slip rate"},
-         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-12, 1e3, "slip rate before the event"}}};
+         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-12, 1e3, "slip rate before the event"},
+         {"theta_i_s", &L::theta_i_s, 0, 1e12,
+          "theta before the event, exp((psi - f0)/b) d_c/V0; of it, V_i and prestress.t_Pa two decide the "
+          "third; "
+          "0: it follows from the others"}}};
     if constexpr (weakens_strongly) {
-      all[6] = {"f_w", &L::f_w, 0, 100, "coefficient of steady sliding far beyond V_w"};
-      all[7] = {"V_w_m_per_s", &L::V_w_m_per_s, 1e-12, 1e3, "slip rate from which friction weakens"};
+      all[7] = {"f_w", &L::f_w, 0, 100, "coefficient of steady sliding far beyond V_w"};
+      all[8] = {"V_w_m_per_s", &L::V_w_m_per_s, 1e-12, 1e3, "slip rate from which friction weakens"};
     }
     return all;
   }
@@ -119,8 +124,22 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     return e;
   }
 
+  /// psi before the event, where theta_i is given.
+  double given_state() const { return f0 + b * std::log(V0_m_per_s * theta_i_s / d_c_m); }
+  /// t before the event under p, of sliding at V_i: steadily, or with the theta_i that is given.
+  double traction_before_Pa(double p_Pa) const {
+    if (theta_i_s == 0) return steady_coefficient(V_i_m_per_s) * p_Pa;
+    const double u = given_state() / a + std::log(V_i_m_per_s / V0_m_per_s);
+    return a * p_Pa * (u > 20 ? u : std::asinh(0.5 * std::exp(u)));
+  }
+  /// V_i where a node has t and p, and theta_i is given.
+  double slip_rate_before_m_per_s(double t_Pa, double p_Pa) const {
+    const double y = std::abs(t_Pa) / (a * p_Pa);
+    return V0_m_per_s * std::exp(y - given_state() / a) * -std::expm1(-2 * y);
+  }
   /// psi where a node that slides at V_i has t and p; of steady sliding where it is open or has no t.
   double state_before(double t_Pa, double p_Pa) const {
+    if (theta_i_s > 0) return given_state();
     const auto law = evaluator();
     if (!(p_Pa > 0) || t_Pa == 0) return law.steady_state(V_i_m_per_s);
     return law.state_of(std::abs(t_Pa) / p_Pa, std::log(V_i_m_per_s / V0_m_per_s));

@@ -3,6 +3,7 @@
 
 #include "interface/friction.hpp"
 #include "interface/friction/coulomb.hpp"
+#include "interface/friction/exponential_slip_weakening.hpp"
 #include "interface/friction/rate_and_state.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/table.hpp"
@@ -15,8 +16,9 @@ struct LawList {};
 
 /// All friction laws the case file can name; a new law is one more type in this list. The first is the
 /// default.
-using Registry = LawList<VelocityWeakening, Coulomb, SlipWeakening, SlipWeakeningHealing, SlipTable,
-                         SlipRateTable, RateAndStateAging, RateAndStateSlip, RateAndStateStrong>;
+using Registry =
+    LawList<VelocityWeakening, Coulomb, SlipWeakening, SlipWeakeningHealing, ExponentialSlipWeakening,
+            SlipTable, SlipRateTable, RateAndStateAging, RateAndStateSlip, RateAndStateStrong>;
 using FirstLaw = decltype([]<class First, class... Others>(LawList<First, Others...>) {
   return First{};
 }(Registry{}));

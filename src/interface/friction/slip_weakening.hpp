@@ -15,9 +15,9 @@ template <SlipMemory slip_memory>
 struct LinearSlipWeakening {
   static constexpr bool heals = slip_memory == SlipMemory::until_stick;
   static constexpr const char* name = heals ? "slip_weakening_healing" : "slip_weakening";
-  static constexpr const char* help = heals ? "falls linearly from mu_s to mu_k over the slip d_c since the "
-                                              "node last stuck"
-                                            : "falls linearly from mu_s to mu_k over the slip d_c, for good";
+  static constexpr const char* help = heals ? "from mu_s to mu_k linearly, over the slip d_c since the node "
+                                              "last stuck"
+                                            : "from mu_s to mu_k linearly, over the slip d_c, for good";
   static constexpr SlipMemory memory = slip_memory;
 
   double mu_s = 0.6;
@@ -27,11 +27,11 @@ struct LinearSlipWeakening {
   static constexpr std::array<Parameter<LinearSlipWeakening>, 3> parameters() {
     using L = LinearSlipWeakening;
     return {{{"mu_s", &L::mu_s, 0, 100, "friction coefficient before slip"},
-             {"mu_k", &L::mu_k, 0, 100, "friction coefficient after the slip d_c, at most mu_s"},
-             {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which friction weakens"}}};
+             {"mu_k", &L::mu_k, 0, 100, "friction coefficient after the slip d_c"},
+             {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which friction changes"}}};
   }
   /// Empty, or what is wrong with the parameters together.
-  Message inconsistency() const { return mu_k > mu_s ? kinetic_above_static() : Message(); }
+  Message inconsistency() const { return {}; }
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }

@@ -45,13 +45,16 @@ struct FrictionTableLaw {
       return Message("{} and {} must be of one length, 2 to {} numbers", rows, coefficients, max_rows);
     if (at.front() != 0 || std::ranges::adjacent_find(at, std::greater_equal()) != at.end())
       return Message("{} must begin with 0 and ascend", rows);
-    if (mu.front() < std::ranges::max(mu))
-      return Message("{} must be largest in its first row, at rest", coefficients);
     return {};
   }
 
   double static_coefficient() const { return mu_factor * mu.front(); }
   double kinetic_coefficient() const { return mu_factor * std::ranges::min(mu); }
+
+  /// With the slip rate.
+  bool strengthens() const requires(!over_slip) {
+    return std::ranges::adjacent_find(mu, std::less()) != mu.end();
+  }
 
   /// Twice what mu exceeds its least by, over the slip, through the whole drop.
   double weakening_slip_m() const requires over_slip {

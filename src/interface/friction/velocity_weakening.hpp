@@ -10,11 +10,12 @@
 
 namespace slipfront::interface {
 
-/// mu(v) = mu_k + (mu_s - mu_k) exp(-|v| sqrt((mu_s - mu_k) / alpha)): Kammer et al. 2012, Eq. 1.
+/// mu(v) = mu_k + (mu_s - mu_k) exp(-|v| sqrt(|mu_s - mu_k| / alpha)): Kammer et al. 2012, Eq. 1. Strengthens
+/// with mu_k > mu_s.
 struct VelocityWeakening {
   static constexpr const char* name = "velocity_weakening";
   static constexpr const char* help =
-      "falls from mu_s at rest to mu_k at speed, over about sqrt(alpha / (mu_s - mu_k))";
+      "from mu_s at rest to mu_k at speed, over about sqrt(alpha / |mu_s - mu_k|)";
   static constexpr SlipMemory memory = SlipMemory::none;
 
   double mu_s = 1.3;
@@ -22,17 +23,17 @@ struct VelocityWeakening {
   double alpha_m2_per_s2 = 0.1;
 
   static constexpr std::array<Parameter<VelocityWeakening>, 3> parameters() {
-    return {
-        {{"mu_s", &VelocityWeakening::mu_s, 0, 100, "friction coefficient at rest"},
-         {"mu_k", &VelocityWeakening::mu_k, 0, 100, "friction coefficient at high slip rate, at most mu_s"},
-         {"alpha_m2_per_s2", &VelocityWeakening::alpha_m2_per_s2, 1e-12, 1e12,
-          "transition parameter alpha"}}};
+    return {{{"mu_s", &VelocityWeakening::mu_s, 0, 100, "friction coefficient at rest"},
+             {"mu_k", &VelocityWeakening::mu_k, 0, 100, "friction coefficient at high slip rate"},
+             {"alpha_m2_per_s2", &VelocityWeakening::alpha_m2_per_s2, 1e-12, 1e12,
+              "transition parameter alpha"}}};
   }
   /// Empty, or what is wrong with the parameters together.
-  Message inconsistency() const { return mu_k > mu_s ? kinetic_above_static() : Message(); }
+  Message inconsistency() const { return {}; }
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }
+  bool strengthens() const { return mu_k > mu_s; }
 
   /// The law with its constants folded, for the loop over nodes.
   template <class V>
@@ -47,7 +48,7 @@ struct VelocityWeakening {
     }
   };
   Evaluator<double> evaluator() const {
-    return {mu_k, mu_s - mu_k, std::sqrt((mu_s - mu_k) / alpha_m2_per_s2)};
+    return {mu_k, mu_s - mu_k, std::sqrt(std::abs(mu_s - mu_k) / alpha_m2_per_s2)};
   }
 };
 
