@@ -364,9 +364,9 @@ class Case:
         Runs the case into a folder; progress(part, step, total) is called at times, each of the observers with an InterfaceState at its interval, s.
         """
 
-def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, progress: object | None) -> None:
+def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Callable | None, progress: object | None) -> None:
     """
-    Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].
+    Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) the list of states after a time.
     """
 
 def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:

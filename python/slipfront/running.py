@@ -250,6 +250,7 @@ def run_with_law(
     changes: Mapping[str, Any] | None = None,
     /,
     *,
+    evolve: Callable[..., ArrayLike] | None = None,
     progress: bool | Progress = True,
     **tables: Any,
 ) -> OpenRun:
@@ -257,6 +258,11 @@ def run_with_law(
 
     mu: called with slip rates |v|, m/s, and slip paths, m, both [nodes]; returns the friction coefficient
     [nodes]. Called up to five times for each (sub-)step, since the rate at its end depends on mu.
+
+    evolve: of a law with a state, which never sticks, in a case with a law of rate and state, whose psi it
+    has and begins with. evolve(dt_s, slip_rate, psi) returns psi after a time at these slip rates;
+    mu(slip_rate, psi) rises with the slip rate and is odd in it, so that it is asked for above 0 alone. Each
+    node is solved for its slip rate as under the case's law; mu is called some 15 times.
 
     The case's own law still gives the coefficient before slip, which statics and fronts take: mu(0, 0) must
     be equal to it; and that of weakened nodes. Case and changes as for `run`. The run takes one thread. Its
@@ -267,21 +273,34 @@ def run_with_law(
     if not callable(mu):
         raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
 
-    def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
-        values = array(mu(speed_m_per_s, slip_m), "mu")
-        if len(values) not in (1, len(slip_m)):
-            raise CaseError(f"mu has {len(values)} values, not {len(slip_m)}")
-        if not (np.isfinite(values) & (values >= 0)).all():
-            raise CaseError("mu must be at least 0 and a finite number")
-        return np.ascontiguousarray(np.broadcast_to(values, slip_m.shape))
+    def at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray) -> np.ndarray:
+        values = array(given, name)
+        if len(values) not in (1, len(like)):
+            raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
+        if not (np.isfinite(values) & (values >= least)).all():
+            raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
+        return np.ascontiguousarray(np.broadcast_to(values, like.shape))
 
-    at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
-    expected = prepared.static_coefficient
-    if not math.isclose(at_rest, expected, rel_tol=1e-12):
-        raise CaseError(f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal")
+    def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
+        return at_nodes(mu(speed_m_per_s, slip_m), "mu", 0, slip_m)
+
+    def after(dt_s: float, speed_m_per_s: np.ndarray, psi: np.ndarray) -> list[np.ndarray]:
+        assert evolve is not None
+        return [at_nodes(evolve(dt_s, speed_m_per_s, psi), "evolve", -math.inf, psi)]
+
+    if evolve is None:
+        at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
+        expected = prepared.static_coefficient
+        if not math.isclose(at_rest, expected, rel_tol=1e-12):
+            raise CaseError(
+                f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal"
+            )
+    elif not callable(evolve):
+        raise CaseError(f"evolve is {shown(evolve)}; it must be a function of a time, slip rates and states")
+    of_states = None if evolve is None else after
     folder = temporary_folder()
     try:
-        compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, show), progress)
+        compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, of_states, show), progress)
         return OpenRun(read_place(folder), Kept(folder))
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)

@@ -24,6 +24,16 @@ namespace slipfront::interface {
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
 
+/// The same of a law with states that never sticks. [nodes]
+struct StateArrayLaw {
+  using States = std::vector<std::vector<double>>;
+  /// mu at slip rates V > 0; it rises with V, and is odd.
+  std::function<void(std::span<const double> speed_m_per_s, const States& states, std::span<double> mu)>
+      coefficient;
+  /// States after a time at slip rates |V|.
+  std::function<void(std::span<const double> speed_m_per_s, double dt_s, States& states)> evolve;
+};
+
 /// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states. One
 /// without a state has a cohesion besides its own parameters.
 class FrictionLaw {
@@ -85,6 +95,11 @@ class FrictionLaw {
   void set_function(ArrayLaw function) { function_ = std::make_shared<const ArrayLaw>(std::move(function)); }
   /// Null where there is none.
   const ArrayLaw* function() const { return function_.get(); }
+  /// The same of a law with states, which begin as those of this law.
+  void set_function(StateArrayLaw law) {
+    state_function_ = std::make_shared<const StateArrayLaw>(std::move(law));
+  }
+  const StateArrayLaw* state_function() const { return state_function_.get(); }
 
  private:
   std::string_view name_;
@@ -93,6 +108,7 @@ class FrictionLaw {
   std::shared_ptr<const Lists> lists_;  ///< in the order of the law's lists; null where it has none
   std::span<const LawState> states_;
   std::shared_ptr<const ArrayLaw> function_;
+  std::shared_ptr<const StateArrayLaw> state_function_;
 };
 
 /// What a law is to the case file.

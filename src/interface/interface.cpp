@@ -7,6 +7,7 @@
 
 #include "interface/friction/registry.hpp"
 #include "interface/node.hpp"
+#include "interface/state_array_law.hpp"
 
 namespace slipfront::interface {
 
@@ -230,6 +231,9 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
                  ? update_by<ContactAlgorithm::direct>(model.law, form, dt_s, state)
                  : update_by<ContactAlgorithm::predictor_corrector>(model.law, form, dt_s, state);
     });
+  if (const auto* law = model.law.state_function())
+    return with_form(model.regularisation, since_last_s,
+                     [&](const auto& form) { return update_by(*law, model, form, dt_s, state); });
   return visit(model.law, [&]<class Law>(const Law& one) {
     const auto update_by_law = [&](const auto& law) {
       return with_form(model.regularisation, since_last_s, [&](const auto& form) {

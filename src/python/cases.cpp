@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -113,30 +114,62 @@ void run_case(const input::CaseFile& given, const fs::path& dir, bool overwrite,
              observers);
 }
 
+/// An array of Python's own: who is called may keep it.
+nb::object copied(std::span<const double> values) {
+  const std::size_t shape[] = {values.size()};
+  return nb::cast(nb::ndarray<nb::numpy, const double, nb::ndim<1>>(values.data(), 1, shape),
+                  nb::rv_policy::copy);
+}
+
+void fill(std::span<double> to, const nb::object& given, const char* name) {
+  const auto values = nb::cast<Values>(given);
+  require_length(values, to.size(), name);
+  std::copy_n(values.data(), to.size(), to.begin());
+}
+
+/// Functions of Python as a law with states.
+interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& evolve) {
+  using States = interface::StateArrayLaw::States;
+  const auto list_of = [](const States& states) {
+    nb::list list;
+    for (const auto& values : states) list.append(copied(values));
+    return list;
+  };
+  return {
+      [&mu_of, list_of](std::span<const double> speed_m_per_s, const States& states, std::span<double> mu) {
+        const nb::gil_scoped_acquire locked;
+        fill(mu, mu_of(copied(speed_m_per_s), *list_of(states)), "mu");
+      },
+      [&evolve, list_of](std::span<const double> speed_m_per_s, double dt_s, States& states) {
+        const nb::gil_scoped_acquire locked;
+        const nb::list after = nb::cast<nb::list>(evolve(dt_s, copied(speed_m_per_s), *list_of(states)));
+        for (std::size_t k = 0; k < states.size(); ++k) fill(states[k], after[k], "evolve");
+      }};
+}
+
 /// A function of Python as a law over arrays. It is called without Python's lock.
 interface::ArrayLaw law_of(const nb::callable& mu_of) {
-  using Given = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
   return
       [&mu_of](std::span<const double> speed_m_per_s, std::span<const double> slip_m, std::span<double> mu) {
         const nb::gil_scoped_acquire locked;
-        const std::size_t shape[] = {mu.size()};
-        // Copies: the caller may keep them.
-        const auto speed = nb::cast(Given(speed_m_per_s.data(), 1, shape), nb::rv_policy::copy);
-        const auto slip = nb::cast(Given(slip_m.data(), 1, shape), nb::rv_policy::copy);
-        const auto values = nb::cast<Values>(mu_of(speed, slip));
-        require_length(values, mu.size(), "mu");
-        for (std::size_t k = 0; k < mu.size(); ++k) {
-          require(values(k) >= 0, "mu must be at least 0 and a number");
-          mu[k] = values(k);
-        }
+        fill(mu, mu_of(copied(speed_m_per_s), copied(slip_m)), "mu");
       };
 }
 
 /// The event by a law in Python. One thread: all of them would wait for Python's lock.
 void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::callable& mu_of,
-                nb::object progress) {
+                const std::optional<nb::callable>& evolve, nb::object progress) {
   input::Case config = given.config();
-  config.friction.set_function(law_of(mu_of));
+  const Key law("friction.law");
+  if (evolve && !config.friction.has_state())
+    throw UserError("evolve needs a law with a state, which {} = {} is not", law, config.friction.name());
+  if (!evolve && config.friction.has_state())
+    throw UserError("{} = {} has a state, which mu alone does not change; give evolve", law,
+                    config.friction.name());
+  if (evolve)
+    config.friction.set_function(law_of(mu_of, *evolve));
+  else
+    config.friction.set_function(law_of(mu_of));
   run_config(given, config, dir, false, 1, infinity, std::move(progress));
 }
 
@@ -317,8 +350,11 @@ void bind_cases(nb::module_& module) {
            "progress"_a.none(), "observers"_a,
            "Runs the case into a folder; progress(part, step, total) is called at times, each of the "
            "observers with an InterfaceState at its interval, s.");
-  module.def("run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "progress"_a.none(),
-             "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].");
+  module.def(
+      "run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "evolve"_a.none(), "progress"_a.none(),
+      "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a "
+      "law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) "
+      "the list of states after a time.");
   module.def("resume", &resume, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
              "observers"_a,
              "Goes on with the unfinished run of a folder; does nothing where it is complete.");

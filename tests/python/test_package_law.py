@@ -89,3 +89,49 @@ def test_mistakes_of_a_law():
     ):
         with pytest.raises(slipfront.CaseError, match=told):
             slipfront.run_with_law(CASE, law, COULOMB)
+
+
+def rate_and_state(a, b, d_c_m, f0, V0_m_per_s):
+    """The aging law with its state's exact step, as the program has it."""
+
+    def mu(slip_rate_m_per_s, psi):
+        return a * np.arcsinh(slip_rate_m_per_s / (2 * V0_m_per_s) * np.exp(psi / a))
+
+    def evolve(dt_s, slip_rate_m_per_s, psi):
+        gone = slip_rate_m_per_s * dt_s / d_c_m
+        lost = np.where(gone > 1e-140, -np.expm1(-gone) / np.maximum(slip_rate_m_per_s, 1e-150), dt_s / d_c_m)
+        return f0 + b * np.log(np.exp((psi - f0) / b - gone) + V0_m_per_s * lost)
+
+    return mu, evolve
+
+
+def test_a_copy_of_the_aging_law_moves_as_it():
+    law = {"a": 0.01, "b": 0.016, "d_c_m": 1e-6, "f0": 0.6, "V0_m_per_s": 1e-6}
+    case = {
+        "plate": {"width_m": 0.1, "height_m": 0.02, "element_size_m": 1e-3}
+        | {"corner": "none", "sides": "absorbing", "top": "absorbing"},
+        "loading": {"method": "prestress"},
+        "prestress": {"t_Pa": 2.65e6, "p_Pa": 5e6},
+        "friction": {"law": "rate_and_state_aging"} | law,
+        "event": {"kind": "nucleation"},
+        "nucleation": {"form": "overstress", "overstress_Pa": 1.1e6, "half_length_m": 10e-3},
+        "time": {"end_s": 20e-6, "interface_substeps": 4},
+    }
+    mu, evolve = rate_and_state(**law)
+    theirs = slipfront.run(case)
+    ours = slipfront.run_with_law(case, mu, evolve=evolve)
+    for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "psi"):
+        scale = np.abs(theirs.history[name].values).max()
+        # Rounding, and the slope of mu, which is a difference here, of nodes that creep.
+        assert np.abs(ours.history[name] - theirs.history[name]).max() < 1e-10 * scale, name
+    assert theirs.history.slip_m.max() > 1e-6 and theirs.history.slip_rate_m_per_s.max() > 0.1
+    for wrong, told in (
+        (1.0, "evolve is 1.0; it must be a function"),
+        (lambda dt, rate, psi: np.nan, "evolve must be a finite number"),
+    ):
+        with pytest.raises(slipfront.CaseError, match=told):
+            slipfront.run_with_law(case, mu, evolve=wrong)
+    with pytest.raises(slipfront.CaseError, match="mu is 0.6 without slip"):
+        slipfront.run_with_law(case, lambda rate, psi: 0.6, evolve=evolve)
+    with pytest.raises(slipfront.CaseError, match="which friction.law = coulomb is not"):
+        slipfront.run_with_law(CASE, mu, COULOMB, evolve=evolve)
