@@ -80,7 +80,7 @@ def draw_lateness(
     axis.legend(once.values(), once.keys(), fontsize=7)
 
 
-def add_options(parser: argparse.ArgumentParser, picture: str, size: str, sizes: list[float]) -> None:
+def add_options(parser: argparse.ArgumentParser, picture: str, size: str, sizes: list[float] | None) -> None:
     parser.add_argument("--program", default="build/release/slipfront")
     parser.add_argument("--results", type=Path, default=Path("results-reference"))
     parser.add_argument("--figure", type=Path, help=f"default: {picture} in the folder of the results")

@@ -182,7 +182,8 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
 /// time give t. V is between the half-step velocities before and after, w of the way: in the middle, which is
 /// of second order in dt, unless friction changes so steeply with V that the node would swing about its
 /// balance from step to step. There V is so much nearer to the end of the step that a linear law comes to its
-/// balance in one step; the fewer nodes are so stiff the shorter the step, and the order remains.
+/// balance in one step; the fewer nodes are so stiff the shorter the step, and on a given mesh the order
+/// remains.
 template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Form, class V>
 inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, double dt_s, V impedance_x,
                   Node<V, 1>& n) {

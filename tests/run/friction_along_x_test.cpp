@@ -177,7 +177,8 @@ TEST(FrictionAlongX, ParametersOfNodesAreWritten) {
   write_static(folder.path(), c, make_initial_state(c, go_on));
   const auto text = test::read_file(folder / "static.csv");
   EXPECT_THAT(text,
-              ::testing::StartsWith("x_m,t_s_Pa,p_s_Pa,mu_s,mu_k,d_c_m,cohesion_Pa\n0,2300000,5000000,0.6,0.3,4e-06,0\n"));
+              ::testing::StartsWith(
+                  "x_m,t_s_Pa,p_s_Pa,mu_s,mu_k,d_c_m,cohesion_Pa\n0,2300000,5000000,0.6,0.3,4e-06,0\n"));
   EXPECT_THAT(text, HasSubstr("\n0.05,2300000,5000000,0.625,0.3,4e-06,0\n"));
 }
 
