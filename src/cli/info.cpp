@@ -110,8 +110,17 @@ std::string text_of(const stability::Spread& spread) {
 /// What a law that weakens over a slip lets expect.
 void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
   const auto& o = rupture.of_nodes;
+  const bool has_state = rupture.tip_slip_rate_m_per_s.has_value();
+  const auto add_zone = [&] {
+    if (o.process_zone_m)
+      list.add("process zone at rest", fmt::format("{:.3g} m, {:.3g} elements (Palmer, Rice 1973)",
+                                                   *o.process_zone_m, *rupture.process_zone_elements));
+  };
   if (!o.nucleation_length_m) {
-    list.add("nucleation length", "none: friction does not weaken over a slip, the mesh decides");
+    list.add("nucleation length", has_state
+                                      ? "none: friction does not weaken with the slip rate before the event"
+                                      : "none: friction does not weaken over a slip, the mesh decides");
+    add_zone();
     return;
   }
   const auto trigger = rupture.trigger_length_m
@@ -119,7 +128,7 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
                            : std::string();
   list.add("nucleation length",
            fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
-                       o.unstable_wavelength_m ? "Rubin, Ampuero 2005" : "Uenishi, Rice 2003"));
+                       o.unstable_wavelength_m ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
   if (o.unstable_wavelength_m)
     list.add("unstable wavelengths",
              fmt::format("from {:.3g} m on, under the slip rate before the event (Rice, Ruina 1983)",
@@ -128,8 +137,7 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
     list.add("critical crack length",
              fmt::format("{:.3g} m (Griffith; Andrews 1976): cracks as long run on{}",
                          2 * *o.griffith_half_length_m, trigger));
-  list.add("process zone at rest", fmt::format("{:.3g} m, {:.3g} elements (Palmer, Rice 1973)",
-                                               *o.process_zone_m, *rupture.process_zone_elements));
+  add_zone();
 }
 
 void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {

@@ -719,7 +719,7 @@ std::string describe(const Range& range, const std::string& unit) {
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
       {"m", 1e-12, 1e6},      {"s", 1e-15, 1e12},    {"Pa", 1e-6, 1e15},
-      {"kg/m3", 1e-6, 1e6},   {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-12, 1e6},
+      {"kg/m3", 1e-6, 1e6},   {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6},
       {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},  {"", 1e-18, 1e9}};
   return all;
 }

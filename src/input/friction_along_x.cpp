@@ -134,11 +134,14 @@ void apply_field(const Case& config, const std::vector<double>& x_m, std::vector
     laws[i].parameter(along_x.random_key) *= 1 + along_x.random_share * field(x_m[i]);
 }
 
-void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x_m,
+void require_allowed(const Case& config, const std::vector<double>& x_m,
                      const std::vector<FrictionLaw>& laws) {
+  const FrictionAlongX& along_x = config.friction_along_x;
   const bool random = along_x.random_key != "none";
   for (std::size_t i = 0; i < laws.size(); ++i) {
-    const auto problem = problem_of(laws[i]);
+    auto problem = problem_of(laws[i]);
+    if (problem.empty() && !is_prestressed(config) && laws[i].cohesion_Pa() > 0)
+      problem = "cohesion_Pa needs loading.method = prestress";
     if (problem.empty()) continue;
     if (random)
       throw UserError("{}: at x = {:.6g} m {}; choose a smaller share", Key("friction.random_share"), x_m[i],
@@ -146,6 +149,25 @@ void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x
           .about("friction.random_key");
     throw UserError("{}: at x = {:.6g} m {}", in_friction_file(along_x.file), x_m[i], problem);
   }
+}
+
+/// Of t, V_i and theta_i two decide the third, at all nodes the same.
+void require_one_initial_state(const Case& config, const std::vector<FrictionLaw>& laws) {
+  if (!config.friction.has_state()) return;
+  const FrictionAlongX& along_x = config.friction_along_x;
+  const auto given =
+      std::ranges::count_if(laws, [](const auto& law) { return law.parameter("theta_i_s") > 0; });
+  if (given == 0) return;
+  const auto place = in_friction_file(along_x.file);
+  if (given != std::ssize(laws))
+    throw UserError("{}: theta_i_s is 0 at some nodes and not at others; give it everywhere, or nowhere",
+                    place);
+  const bool V_i_varies = std::ranges::find(along_x.table.keys, "V_i_m_per_s") != along_x.table.keys.end() ||
+                          along_x.random_key == "V_i_m_per_s";
+  if (V_i_varies && config.prestress.t_Pa)
+    throw UserError("{}: {} and {} decide on V_i, which cannot vary by itself; leave one of the three out",
+                    along_x.random_key == "V_i_m_per_s" ? Message("{}", Key("friction.random_key")) : place,
+                    Key("prestress.t_Pa"), Key("friction.theta_i_s"));
 }
 
 }  // namespace
@@ -172,9 +194,10 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
   std::vector<FrictionLaw> laws(x_m.size(), config.friction);
   if (!along_x.file.empty()) apply_table(along_x, x_m, laws);
   if (along_x.random_key != "none") apply_field(config, x_m, laws);
+  require_one_initial_state(config, laws);
   for (auto& law : laws)
     if (config.prestress.t_Pa) settle_slip_rate(law, *config.prestress.t_Pa, config.prestress.p_Pa);
-  require_allowed(along_x, x_m, laws);
+  require_allowed(config, x_m, laws);
   return laws;
 }
 

@@ -110,7 +110,7 @@ std::optional<StateResponse> state_response(const FrictionLaw& law, double speed
       return {};
     else {
       const double V = std::max(speed_m_per_s, l.V_i_m_per_s);
-      return StateResponse{l.a, l.a - V * l.steady_slope_s_per_m(V), l.d_c_m, V};
+      return StateResponse{l.a, l.a - V * l.steady_slope_s_per_m(V), l.d_c_m, V, l.breakdown_per_m()};
     }
   });
 }

@@ -146,6 +146,7 @@ struct StateResponse {
   double a, b;   ///< d mu/d ln V at once, and what the state takes back of it
   double d_c_m;  ///< slip over which the state follows
   double V_m_per_s;
+  double breakdown_per_m;  ///< fall of mu with slip behind a fast tip
 };
 /// At a slip rate, at V_i where that is faster; none for laws without a state.
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s);

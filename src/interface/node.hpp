@@ -106,10 +106,10 @@ template <ContactAlgorithm algorithm, SlipMemory slip_memory, bool strengthens_s
 inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
-  const auto& [mu, mu_at_rest, mu_k, cohesion_of_law_Pa, strengthens] = law;
+  const Mu& mu = law.mu;
   const V p = n.p_Pa;
-  const V cohesion = select(p > 0, cohesion_of_law_Pa, V{});
-  const Weakened<V> weakened(mu_at_rest, mu_k, n.intact, n.is_forced);
+  const V cohesion = select(p > 0, law.cohesion_Pa, V{});
+  const Weakened<V> weakened(law.mu_at_rest, law.mu_k, n.intact, n.is_forced);
   const auto coefficient = [&](V speed, V slip) { return weakened(mu(speed, slip)); };
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
@@ -148,8 +148,8 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
   }
   if constexpr (strengthens_somewhere && !predicts) {
     const Strengthening rises(mu, n.slip_m, p / impedance_x, last_rate, v_trial);
-    rate = select(strengthens > 0, last_rate, evaluated_at);
-    Mask<V> goes_on = strengthens > 0;  // a lane does not see how many evaluations others take
+    rate = select(law.strengthens > 0, last_rate, evaluated_at);
+    Mask<V> goes_on = law.strengthens > 0;  // a lane does not see how many evaluations others take
     for (int k = 0; k < rises.most_evaluations; ++k) {
       evaluate();
       const V next = rises.next(rate, rises.w * v_x + (1 - rises.w) * last_rate, v_trial, sticks);
@@ -162,7 +162,7 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
-  V mu_stuck = weakened(mu_at_rest);
+  V mu_stuck = weakened(law.mu_at_rest);
   if constexpr (slip_memory != SlipMemory::none) mu_stuck = coefficient(V{}, slip);
   const V strength_at_rest = form.strength(mu_stuck, p, now) + cohesion;
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <thread>
 
+#include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
 #include "solid/operator.hpp"
 #include "stability/verdict.hpp"

@@ -213,6 +213,14 @@ void add_times(const input::Case& config, double step_s, Notes& notes) {
                     "the plate; is it in s?",
                     config.time.end_s, config.time.end_s / step_s,
                     config.time.end_s * solid::shear_speed_m_per_s(config.material) / width_m));
+  const auto& prestress = config.prestress;
+  const double falls_by_Pa = -prestress.p_rate_Pa_per_s * config.time.end_s;
+  if (is_prestressed(config) && falls_by_Pa > input::nominal_pressure_Pa(config))
+    notes.push_back(
+        fmt::format("prestress.p_rate_Pa_per_s takes the mean pressure to 0 at {:.4g} s: from there on the "
+                    "interface opens, "
+                    "and what moves without contact does not count as slip",
+                    input::nominal_pressure_Pa(config) / -prestress.p_rate_Pa_per_s));
   if (starts_by_force(config) && config.trigger.ramp_s > config.time.end_s)
     notes.push_back(fmt::format("event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",
                                 config.trigger.ramp_s, config.time.end_s));

@@ -77,6 +77,32 @@ std::int64_t n_beyond_strength(const std::vector<Placed>& nodes) {
   });
 }
 
+bool loads_grow(const input::Case& config) {
+  return is_prestressed(config) &&
+         (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0);
+}
+
+/// Empty, or that growing tractions come to the strength of no node before the end.
+std::string doubt_of_growing_loads(const input::Case& config, const std::vector<Placed>& nodes) {
+  const double t_rate = config.prestress.t_rate_Pa_per_s, p_rate = config.prestress.p_rate_Pa_per_s;
+  const bool follows_p = config.regularisation.relaxed != interface::Relaxed::initial_pressure;
+  double first_s = infinity;
+  for (const auto& [x_m, node] : nodes) {
+    const double strength_rate = follows_p ? node.strength_Pa / node.p_Pa * p_rate : 0;
+    for (const double direction : {1.0, -1.0}) {
+      const double nearer_per_s = direction * t_rate - strength_rate;
+      if (nearer_per_s > 0)
+        first_s = std::min(first_s, (node.strength_Pa - direction * node.t_Pa) / nearer_per_s);
+    }
+  }
+  if (first_s <= config.time.end_s) return {};
+  return std::isfinite(first_s) ? fmt::format(
+                                      "growing tractions come to the strength at {:.3g} s, after "
+                                      "time.end_s = {:g} s",
+                                      first_s, config.time.end_s)
+                                : "tractions grow away from the strength at all nodes inside";
+}
+
 /// Empty, or why the event does not begin.
 std::string doubt_of_beginning(const input::Case& config, const std::vector<Placed>& nodes) {
   const auto n_beyond = n_beyond_strength(nodes);
@@ -84,6 +110,7 @@ std::string doubt_of_beginning(const input::Case& config, const std::vector<Plac
     return fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once, without a front",
                        n_beyond, nodes.size());
   if (nodes.empty() || n_beyond > 0 || nodes.front().node.state) return {};
+  if (loads_grow(config)) return doubt_of_growing_loads(config, nodes);
   if (config.event == EventKind::none) return "event.kind = none, and t is below mu_s p at all nodes inside";
   if (input::is_pushed_at_edge(config) && config.trigger.amount < 1)
     return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below mu_s p",

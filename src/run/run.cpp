@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/per_node.hpp"
+#include "input/friction_along_x.hpp"
 #include "motion/distributed_stepper.hpp"
 #include "motion/stepper.hpp"
 #include "motion/trigger_zone.hpp"

@@ -142,8 +142,9 @@ void set_lengths_of_state(const std::vector<NodeBefore>& nodes, Outlook& o) {
   using State = interface::StateResponse;
   o.nucleation_length_m =
       median([](double mu, const State& s, double p) { return nucleation_length_m(mu, s, p); });
-  o.process_zone_m =
-      median([](double mu, const State& s, double p) { return process_zone_m(mu, s.b * p, s.d_c_m); });
+  o.process_zone_m = median([](double mu, const State& s, double p) {
+    return s.breakdown_per_m > 0 ? process_zone_m(mu, s.breakdown_per_m * p, 1) : infinity;
+  });
   o.unstable_wavelength_m = median(unstable_wavelength_m);
   o.S = o.drop_ratio = {nan, nan, nan};
   o.regime = o.n_weakening > 0 ? "unknown: the strength at a tip depends on its slip rate"

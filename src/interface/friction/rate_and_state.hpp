@@ -61,8 +61,8 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
          {"b", &L::b, 1e-6, 10, "effect of the state"},
          {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which the state changes"},
          {"f0", &L::f0, 0, 100, "coefficient of steady sliding at V0"},
-         {"V0_m_per_s", &L::V0_m_per_s, 1e-12, 1e3, "reference slip rate"},
-         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-12, 1e3, "slip rate before the event"},
+         {"V0_m_per_s", &L::V0_m_per_s, 1e-30, 1e3, "reference slip rate"},
+         {"V_i_m_per_s", &L::V_i_m_per_s, 1e-30, 1e3, "slip rate before the event"},
          {"theta_i_s", &L::theta_i_s, 0, 1e12,
           "theta before the event, exp((psi - f0)/b) d_c/V0; of it, V_i and prestress.t_Pa two decide the "
           "third; "
@@ -153,6 +153,14 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     const double V = std::max(speed_m_per_s, V_i_m_per_s), small = 1e-4 * V;
     const auto law = evaluator();
     return (law.steady_coefficient(V + small) - law.steady_coefficient(V - small)) / (2 * small);
+  }
+  /// By how much the coefficient falls with slip behind a tip that comes at 1 m/s to an interface in steady
+  /// sliding at V_i: under the aging law b/d_c; under the slip law exponentially over d_c, as linear
+  /// weakening of the same fracture energy over 2 d_c.
+  double breakdown_per_m() const {
+    if constexpr (evolution == StateEvolution::aging) return b / d_c_m;
+    const auto law = evaluator();
+    return (law.steady_state(V_i_m_per_s) - law.steady_state(1)) / (2 * d_c_m);
   }
   /// As before the event.
   double static_coefficient() const { return steady_coefficient(0); }
