@@ -60,12 +60,13 @@ DefaultRule l_star_rule(const Scale& width) {
   return rule;
 }
 
-/// Under a law that never sticks slip may speed up for long before a front begins.
+/// Under a law that never sticks slip may speed up for long before a front begins, and where friction rises
+/// with the slip rate it may go on slowly.
 DefaultRule quiet_time_rule(const Scale& crossing) {
   auto rule = multiple_of(crossing, "time.quiet_s");
-  rule.text += "; `inf` under a friction law with a state";
+  rule.text += "; `inf` under a friction law with a state or that rises with the slip rate";
   rule.value = [share = rule.value](const Case& c) -> Value {
-    return c.friction.has_state() ? Value(infinity) : share(c);
+    return c.friction.has_state() || strengthens(c.friction) ? Value(infinity) : share(c);
   };
   return rule;
 }

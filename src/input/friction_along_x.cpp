@@ -159,6 +159,9 @@ void require_one_initial_state(const Case& config, const std::vector<FrictionLaw
       std::ranges::count_if(laws, [](const auto& law) { return law.parameter("theta_i_s") > 0; });
   if (given == 0) return;
   const auto place = in_friction_file(along_x.file);
+  if (!is_prestressed(config) || !config.prestress.file.empty())
+    throw UserError("{}: theta_i_s needs {} = prestress and {}, not a table; remove the column", place,
+                    Key("loading.method"), Key("prestress.p_Pa"));
   if (given != std::ssize(laws))
     throw UserError("{}: theta_i_s is 0 at some nodes and not at others; give it everywhere, or nowhere",
                     place);

@@ -218,7 +218,7 @@ void check_trigger(const Case& config) {
   if (!interface::is_at_edge(config.event)) return;
   if (config.trigger.form == interface::TriggerForm::weakened && never_weakens(config))
     throw UserError(
-        "{} = weakened does nothing where the friction law does not weaken, mu_k as large as mu_s; choose "
+        "{} = weakened does nothing where the friction law does not weaken, mu_k at least mu_s; choose "
         "added or raised",
         Key("event.trigger_form"))
         .about("event.kind", "friction.law");
@@ -233,13 +233,18 @@ void check_nucleation(const Case& config) {
     throw UserError("{} is {:.12g} m; it must be on the interface, at 0 to {:.12g} m", Key("nucleation.x_m"),
                     n.x_m, width_m)
         .about(width);
-  if (reach_m <= 0) throw UserError("{} and {} are both 0; give the patch a length", half_length, taper);
+  const bool is_smooth = n.profile == interface::NucleationProfile::smooth;
+  if (reach_m <= 0)
+    throw UserError("{} 0; give the patch a length", is_smooth
+                                                         ? Message("{} is", half_length)
+                                                         : Message("{} and {} are both", half_length, taper));
   if (config.plate.sides == Sides::periodic && 2 * reach_m > width_m)
-    throw UserError("{} + {:leaf} is {:.12g} m; with {} = periodic it must be at most half of {}, {:.12g} m",
-                    half_length, taper, reach_m, Key("plate.sides"), width, 0.5 * width_m);
+    throw UserError("{} is {:.12g} m; with {} = periodic it must be at most half of {}, {:.12g} m",
+                    is_smooth ? Message("{}", half_length) : Message("{} + {:leaf}", half_length, taper),
+                    reach_m, Key("plate.sides"), width, 0.5 * width_m);
   if (is_weakened_patch(config) && never_weakens(config))
     throw UserError(
-        "{} = {} does nothing where the friction law does not weaken, mu_k as large as mu_s; choose "
+        "{} = {} does nothing where the friction law does not weaken, mu_k at least mu_s; choose "
         "overstress",
         Key("nucleation.form"), is_forced(config) ? "forced" : "weakened")
         .about("event.kind", "friction.law");

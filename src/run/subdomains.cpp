@@ -26,10 +26,11 @@ struct Plan {
   std::vector<motion::BodySteps> steps;  ///< of the bodies
   std::vector<double> whole_x_m;         ///< of the whole interface: friction along x is read at its nodes
   std::vector<motion::Probe> probes;
+  double tip_slip_rate_m_per_s = 0;  ///< by the tractions, which rank 0 alone has
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(whole, threads, steps, whole_x_m, probes);
+    archive(whole, threads, steps, whole_x_m, probes, tip_slip_rate_m_per_s);
   }
 };
 
@@ -111,6 +112,7 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
     plan.threads = execution.threads;
     plan.whole_x_m = interface_x_m(initial.mesh);
     plan.probes = probes_of(config, initial.mesh, initial.base);
+    if (config.friction.has_state()) plan.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
     to.append(packed(plan, initial.mesh.grid, initial));
   });
   const auto plan = unpacked<Plan>(message);
@@ -119,8 +121,9 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
   const auto& partition = plan.whole.partition;
   const Columns own(config, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
                     [&](std::span<double> values) { processes.reduce_max(values); });
-  const auto contact = input::contact_model(config, plan.whole_x_m,
-                                            plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
+  auto contact = input::contact_model(config, plan.whole_x_m,
+                                      plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
+  contact.tip_slip_rate_m_per_s = plan.tip_slip_rate_m_per_s;
   auto stepper = std::make_unique<motion::DistributedStepper>(
       processes, plan.whole, own.sources(), contact, config.time, motion::Execution{.threads = plan.threads});
   stepper->set_probes(plan.probes);

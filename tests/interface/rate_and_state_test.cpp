@@ -81,6 +81,37 @@ TEST(RateAndState, AgesByTheTimeAtRest) {
   EXPECT_NEAR(slip.evaluator().evolved(0.65, 0, 4.0), 0.65, 1e-15);
 }
 
+/// With so small a b theta is beyond the range of doubles.
+TEST(RateAndState, AgesWhateverTheAge) {
+  for (const double b : {1e-3, 3e-4, 1e-6}) {
+    RateAndStateAging law;
+    law.b = b;
+    const auto e = law.evaluator();
+    EXPECT_NEAR(e.evolved(0.97, 1e-9, 1e-7), 0.97, 1e-12) << b;
+    EXPECT_NEAR(e.evolved(0.97, 1.0, law.d_c_m), 0.97 - b, 1e-12) << b;
+    EXPECT_NEAR(e.evolved(0.97, 1.0, 1e6 * law.d_c_m), e.steady_state(1), 1e-12) << b;
+    EXPECT_NEAR(e.evolved(0.97, 0, 1), 0.97, 1e-12) << b;
+  }
+}
+
+/// Where psi/a is beyond the range of doubles there is no friction, and no number that is none.
+TEST(RateAndState, ANodeWithoutFrictionGoesOn) {
+  RateAndStateAging law;
+  law.b = 10;
+  const ContactModel model{law};
+  auto s = Interface(1, model.law.states());
+  s.mass_per_length_kg_m2[0] = test::mass;
+  s.p_Pa[0] = 5e6;
+  s.t_Pa[0] = 2.65e6;
+  start_contact(model, s);
+  s.law_states[0][0] = -100;
+  for (int n = 0; n < 100; ++n) {
+    test::pull(model, s, s.slip_rate_m_per_s[0] * impedance + 1e6, 5e6);
+    EXPECT_NEAR(s.t_Pa[0], 0, 1e-6);
+    EXPECT_NEAR(s.slip_rate_m_per_s[0], (n + 1) * 1e6 / impedance, 1e-9 * (n + 1));
+  }
+}
+
 TEST(RateAndState, AVelocityStepJumpsByAAndFallsByB) {
   const double factor = 10, V = 1e-6;
   const RateAndStateSlip law;

@@ -75,6 +75,22 @@ CASES = {
         "law": 'law = "rate_and_state_aging"\nf0 = 1.1',
         "rest": NUCLEATION.format(form="overstress", x_m=0.1),
     },
+    # The slip rate at a tip follows from the table, which rank 0 alone has.
+    "rate and state, table of tractions": {
+        "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
+        "law": 'law = "rate_and_state_aging"\nf0 = 1.1',
+        "rest": NUCLEATION.format(form="overstress", x_m=0.1).replace(
+            "t_Pa = 4.6e6\np_Pa = 4e6", 'file = "tractions.csv"'
+        ),
+        "files": {"tractions.csv": "x_m,t_Pa,p_Pa\n0,4.6e6,4e6\n0.2,4.6e6,4e6\n"},
+    },
+    "forced nucleation, growing tractions": {
+        "plate": 'corner = "none"',
+        "rest": NUCLEATION.format(form="forced", x_m=0.1).replace(
+            "[event]", "t_rate_Pa_per_s = 5e9\np_rate_Pa_per_s = -2e9\n[event]"
+        )
+        + "front_speed_m_per_s = 500\nweakening_time_s = 2e-6\n",
+    },
     "friction along x": {"friction": 'file = "mu.csv"', "files": {"mu.csv": TABLE}},
     "two bodies": {"rest": BASE},
     "absorbing edges": {

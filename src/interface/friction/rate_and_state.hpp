@@ -112,7 +112,18 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
       }
       // Of V0 theta/d_c; lost / V is dt/d_c at rest.
       const V grown = select(lost > 1e-140, V0_m_per_s * lost / speed, V0_m_per_s * per_d_c_per_m * dt_s);
-      return f0 + b * logarithm(exp_minus((f0 - psi) * per_b) * left + grown);
+      const V age = (psi - f0) * per_b;  // ln(V0 theta/d_c)
+      constexpr double large = 600;
+      const V within = select(age < large, age, V{});
+      V next = f0 + b * logarithm(exp_minus(-within) * left + grown);
+      if (any(age >= large)) {
+        // The larger of the two terms apart, so that neither leaves the range of doubles.
+        const V aged = age - speed_m_per_s * dt_s * per_d_c_per_m, healed = logarithm(grown);
+        const V most = select(aged > healed, aged, healed);
+        const V sum = f0 + b * (most + logarithm(1 + exp_minus(absolute(aged - healed))));
+        next = select(age >= large, sum, next);
+      }
+      return next;
     }
   };
   Evaluator<double> evaluator() const {
