@@ -3,6 +3,7 @@
 
 import sys
 
+import h5py
 import numpy as np
 import pytest
 from common import ROOT, call, require_done, sets
@@ -18,6 +19,7 @@ COARSE_M = {
     "steel": 2e-3,
     "gel": 1e-3,
     "pmma": 1e-3,
+    "rate-and-state": 1e-3,
     "supershear": 0.5e-3,
     "pulse": 0.5e-3,
     "arrest": 1e-3,
@@ -94,6 +96,14 @@ def test_pmma_a_second_front_starts_ahead_of_the_first(run):
     early, late = (onset_s(blocks, x) for x in (0.03, 0.08))
     assert 0.6 < (0.08 - 0.03) / (late - early) / c_S(blocks) < 1
     assert speed_at(longest(blocks, 1), 0.15) > 1.2 * c_S(blocks)
+
+
+def test_rate_and_state_heals_behind_a_front_below_the_rayleigh_speed(run, tmp_path):
+    blocks = run("rate-and-state")
+    assert 0.75 < speed_at(longest(blocks, 1), 0.14) / c_S(blocks) < 0.92
+    with h5py.File(tmp_path / "rate-and-state/interface.h5") as file:
+        psi = file["psi"][:, int(np.argmin(np.abs(file["x_m"][:] - 0.1)))]
+    assert psi.min() < 0.35 < 0.42 < psi[-1] < psi[0]
 
 
 def test_supershear_both_ways_and_its_energies_balance(run):
