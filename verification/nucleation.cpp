@@ -97,8 +97,8 @@ Growth growth(const std::string& label, const Begin& begin, double V_i, int elem
 
 constexpr double zone_half_length_m = 0.01;
 
-/// Growth rate, in c_S per half-length, of slip in a zone between barriers, so many times as long as the
-/// critical one, under linear slip weakening.
+/// Growth rate of slip in a zone between barriers under linear slip weakening, in c_S per half-length.
+/// @param length  of the zone over the critical one
 double zone_growth(double length, int elements) {
   constexpr double mu_s = 0.6, mu_k = 0.1;
   // Uenishi and Rice (2003): the critical half-length is 0.5789 mu* d_c/(strength drop).

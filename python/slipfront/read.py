@@ -435,10 +435,10 @@ def read_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
 def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Times and, by name, HISTORY_FIELDS and the law's states [times, nodes] of an open interface.h5; a cut
     row is left out."""
-    told = file.parent / "run.json"
-    states = read_json_table(told).get("law_states", [])
+    facts = file.parent / "run.json"
+    states = read_json_table(facts).get("law_states", [])
     is_list = isinstance(states, list) and all(isinstance(name, str) for name in states)
-    require(is_list, told, "'law_states' are not names")
+    require(is_list, facts, "'law_states' are not names")
     names = (*HISTORY_FIELDS, *states)
     data = read_bytes(file)[head_bytes(file) :]
     n = len(x_m)

@@ -136,6 +136,12 @@ inline bool is_prestressed(const Case& config) {
   return config.loading.method == statics::LoadingMethod::prestress;
 }
 
+/// Whether these grow during the event.
+inline bool has_growing_tractions(const Case& config) {
+  return is_prestressed(config) &&
+         (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0);
+}
+
 /// Whether the event starts by a traction added next to an edge of contact.
 inline bool is_pushed_at_edge(const Case& config) {
   return interface::is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
@@ -152,6 +158,10 @@ inline bool is_weakened_patch(const Case& config) {
 /// Whether that takes its time.
 inline bool is_forced(const Case& config) {
   return is_weakened_patch(config) && config.nucleation.form == interface::NucleationForm::forced;
+}
+/// That as nucleation.form has it.
+inline const char* weakening_form(const Case& config) {
+  return is_forced(config) ? "forced" : "weakened";
 }
 /// Whether it starts by a force, with the trigger's ramp and duration.
 inline bool starts_by_force(const Case& config) {

@@ -220,7 +220,8 @@ interface::ContactModel contact_model(const Case& config, const std::vector<doub
   if (config.friction.has_state()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
   const auto laws = friction_at(config, x_m);
   if (!laws.empty())
-    model.of_nodes = interface::NodeLaws(places.of(laws), std::ranges::any_of(laws, interface::strengthens));
+    model.of_nodes = interface::NodeLaws(
+        places.of(laws), std::ranges::any_of(laws, [](const FrictionLaw& law) { return strengthens(law); }));
   return model;
 }
 

@@ -47,8 +47,7 @@ void check_state(const Case& config) {
     refuse(Key("contact.algorithm"), "predictor_corrector", "direct");
   if (config.loading.method == statics::LoadingMethod::ramp)
     refuse(Key("loading.method"), "ramp", "direct or prestress");
-  if (is_weakened_patch(config))
-    refuse(Key("nucleation.form"), is_forced(config) ? "forced" : "weakened", "overstress");
+  if (is_weakened_patch(config)) refuse(Key("nucleation.form"), weakening_form(config), "overstress");
   if (interface::is_at_edge(config.event) && config.trigger.form == interface::TriggerForm::weakened)
     refuse(Key("event.trigger_form"), "weakened", "added or raised");
   if (config.regularisation.relaxed == interface::Relaxed::strength)
@@ -73,10 +72,11 @@ void check_initial_state(const Case& config) {
   auto settled = law;
   settle_slip_rate(settled, *config.prestress.t_Pa, config.prestress.p_Pa);
   const double follows = settled.parameter(leaf_of(V.name));
-  constexpr double least = 1e-30, most = 1e3, rounding = 1e-6;
-  if (!(follows >= least && follows <= most))
-    throw UserError("{} and {} give {} = {:.6g} m/s; it must be at least {:g} and at most {:g} m/s", theta, t,
-                    V, follows, least, most);
+  constexpr double rounding = 1e-6;
+  const Range& allowed = find_entry(law_of(config).entries, V.name)->range;
+  if (!contains(allowed, follows))
+    throw UserError("{} and {} give {} = {:.6g} m/s; it must be {}", theta, t, V, follows,
+                    describe(allowed, "m/s"));
   if (std::abs(V_i - follows) > rounding * follows)
     throw UserError("{} and {} give {} = {:.6g} m/s, not {:.6g} m/s; leave one of the three out", theta, t, V,
                     follows, V_i);
@@ -246,7 +246,7 @@ void check_nucleation(const Case& config) {
     throw UserError(
         "{} = {} does nothing where the friction law does not weaken, mu_k at least mu_s; choose "
         "overstress",
-        Key("nucleation.form"), is_forced(config) ? "forced" : "weakened")
+        Key("nucleation.form"), weakening_form(config))
         .about("event.kind", "friction.law");
 }
 

@@ -98,10 +98,7 @@ double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, doub
 }
 
 bool strengthens(const FrictionLaw& law) {
-  return visit(law, [](const auto& l) {
-    if constexpr (requires { l.strengthens(); }) return l.strengthens();
-    return false;
-  });
+  return visit(law, [](const auto& l) { return strengthens(l); });
 }
 
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s) {

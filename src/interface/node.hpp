@@ -71,10 +71,17 @@ inline void press_locked(N& n, V impedance, double per_step) {
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
-/// At which slip rate friction that rises with it is evaluated. Where it rises steeply against the node's
-/// impedance the iteration of weakening laws would diverge, and the middle of the step leave a swing about
-/// the balance: the rate is so much nearer to the end of the step that a linear law comes to its balance in
-/// one, and found by Newton's steps.
+/// How far towards the end of the step the slip rate is at which friction that rises with it is evaluated: in
+/// the middle, which is of second order in dt, unless friction rises so steeply that the node would swing
+/// about its balance from step to step; then so far that a linear law comes to its balance in one step.
+/// @param softness  of the node: its impedance over d traction/d rate of friction
+template <class V>
+inline V share_of_later_rate(V softness) {
+  return select(softness < 0.5, 1 - softness, V{} + 0.5);
+}
+
+/// Newton's steps to the slip rate at which friction that rises with it is evaluated: where that is steep the
+/// iteration of weakening laws would diverge.
 template <class Mu, class V>
 struct Strengthening {
   static constexpr int most_evaluations = 40;
@@ -86,7 +93,7 @@ struct Strengthening {
   Strengthening(const Mu& mu_, V slip, V compliance_, V last_rate, V v_trial)
       : mu(mu_), slip_m(slip), compliance(compliance_) {
     const V g = slope(last_rate);
-    w = select(g > 2, 1 - 1 / select(g > 2, g, V{} + 2), V{} + 0.5);
+    w = share_of_later_rate(1 / select(g > 2, g, V{} + 2));
     w = select(last_rate * v_trial < 0, V{} + 1, w);
   }
   V slope(V rate) const { return positive_part(mu.slope_s_per_m(absolute(rate), slip_m)) * compliance; }
@@ -179,11 +186,8 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
 }
 
 /// Friction of a law with a state, psi, that never sticks: the state of this time and the slip rate V at this
-/// time give t. V is between the half-step velocities before and after, w of the way: in the middle, which is
-/// of second order in dt, unless friction changes so steeply with V that the node would swing about its
-/// balance from step to step. There V is so much nearer to the end of the step that a linear law comes to its
-/// balance in one step; the fewer nodes are so stiff the shorter the step, and on a given mesh the order
-/// remains.
+/// time give t. V is between the half-step velocities before and after, w of the way. The fewer nodes are so
+/// stiff that V is not in the middle the shorter the step, and on a given mesh the order two remains.
 template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Form, class V>
 inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, double dt_s, V impedance_x,
                   Node<V, 1>& n) {
@@ -202,7 +206,7 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, 
   const V a_p = law.a * p, per_a_p = 1 / a_p;
   // Of the mass over that of the friction, a p/V.
   const V softness = absolute(last_rate) * impedance_x * per_a_p;
-  V w = select(softness < 0.5, 1 - softness, V{} + 0.5);
+  V w = share_of_later_rate(softness);
   V t{}, v_x{}, rate{};
   const auto solve = [&] {
     rate = w * v_trial + (1 - w) * last_rate;

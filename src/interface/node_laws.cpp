@@ -13,9 +13,9 @@ NodeLaws::NodeLaws(std::vector<FrictionLaw> laws, bool some_strengthens)
   const std::size_t n_blocks = (laws_.size() + lanes - 1) / lanes;
   for (std::size_t node = 0; node < n_blocks * lanes; ++node) {
     const FrictionLaw& law = laws_[std::min(node, laws_.size() - 1)];
-    some_strengthens_ = some_strengthens_ || strengthens(law);
     SLIPFRONT_ASSERT(law.name() == laws_.front().name(), "laws of one type along the interface");
     const auto values = visit(law, [&](const auto& l) {
+      some_strengthens_ = some_strengthens_ || strengthens(l);
       const auto folded = values_of<double>(constants_of(law, l));
       return std::vector<double>(folded.begin(), folded.end());
     });

@@ -40,12 +40,11 @@ using ConstantsOf =
 template <class Law>
 ConstantsOf<Law, double> constants_of(const FrictionLaw& of, const Law& law) {
   const auto evaluator = law.evaluator();
-  bool strengthens = false;
-  if constexpr (requires { law.strengthens(); }) strengthens = law.strengthens();
   if constexpr (HasState<Law>)
     return {evaluator, 0};
   else
-    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(), strengthens ? 1.0 : 0.0};
+    return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(),
+            strengthens(law) ? 1.0 : 0.0};
 }
 /// The values of an aggregate of them.
 template <class V, class Constants>

@@ -110,10 +110,20 @@ struct RelaxedStrength {
   static Memory<double> initial(double mu, double p_Pa) { return {mu * p_Pa, mu * p_Pa}; }
 };
 
-/// The coefficient acts at once, so that a stuck node has the static coefficient times the relaxed pressure.
-struct RelaxedPressure {
+/// The coefficient acts on a pressure that is remembered.
+struct RememberedPressure {
   static constexpr bool remembers = true;
+  template <class V>
+  static V strength(V mu, V p_Pa, const Memory<V>& now) {
+    return select(p_Pa > 0, mu * now.relaxed_Pa, V{});
+  }
+  static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
+};
+
+/// The coefficient acts at once, so that a stuck node has the static coefficient times the relaxed pressure.
+struct RelaxedPressure : RememberedPressure {
   Relaxation relaxation;
+  explicit RelaxedPressure(const Relaxation& r) : relaxation(r) {}
   template <class V>
   auto step(V speed_m_per_s) const {
     return relaxation.at(speed_m_per_s);
@@ -122,16 +132,10 @@ struct RelaxedPressure {
   static Memory<V> now(const Following<V>& following, const Memory<V>& before, V /*mu*/, V p_Pa) {
     return {following(before.relaxed_Pa, before.target_Pa, p_Pa), p_Pa};
   }
-  template <class V>
-  static V strength(V mu, V p_Pa, const Memory<V>& now) {
-    return select(p_Pa > 0, mu * now.relaxed_Pa, V{});
-  }
-  static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
 };
 
 /// The strength does not depend on pressure in contact: the coefficient acts on the one before the event.
-struct InitialPressure {
-  static constexpr bool remembers = true;
+struct InitialPressure : RememberedPressure {
   struct Step {};
   template <class V>
   Step step(V /*speed_m_per_s*/) const {
@@ -141,18 +145,13 @@ struct InitialPressure {
   static Memory<V> now(Step, const Memory<V>& before, V /*mu*/, V /*p_Pa*/) {
     return before;
   }
-  template <class V>
-  static V strength(V mu, V p_Pa, const Memory<V>& now) {
-    return select(p_Pa > 0, mu * now.relaxed_Pa, V{});
-  }
-  static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
 };
 
 /// Calls f with the form that the settings name. The choice is made once per contact update.
 template <class F>
 auto with_form(const Regularisation& r, double dt_s, F&& f) {
   if (r.relaxed == Relaxed::strength) return f(RelaxedStrength{{r, dt_s}});
-  if (r.relaxed == Relaxed::pressure) return f(RelaxedPressure{{r, dt_s}});
+  if (r.relaxed == Relaxed::pressure) return f(RelaxedPressure({r, dt_s}));
   if (r.relaxed == Relaxed::initial_pressure) return f(InitialPressure{});
   return f(Immediate{});
 }

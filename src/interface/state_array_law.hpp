@@ -84,7 +84,7 @@ bool update_by(const StateArrayLaw& law, const ContactModel& model, const Form& 
   evaluate(further);
   for (std::size_t i = 0; i < n; ++i) {
     const double softness = 2 * small * last(i) * impedance[i] / (pressure[i] * (further[i] - value[i]));
-    w[i] = softness < 0.5 ? 1 - softness : 0.5;
+    w[i] = share_of_later_rate(softness);
   }
 
   /// Of nodes in contact: V from 0 to the rate without friction, where p mu(V) is what the mass takes of it;

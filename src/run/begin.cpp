@@ -92,7 +92,7 @@ void require_weakening(const input::Case& config, const std::vector<double>& int
       return;
   throw UserError("{} = {} does nothing where friction does not weaken at any node; choose another form",
                   Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"),
-                  is_forced(config) ? "forced" : "weakened")
+                  weakening_form(config))
       .about("event.kind");
 }
 
@@ -117,9 +117,7 @@ std::vector<double> ratios_at_rest(const input::Case& config, const mesh::Mesh& 
 }
 
 double loads_settle_s(const input::Case& config) {
-  if (is_prestressed(config) &&
-      (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0))
-    return infinity;
+  if (has_growing_tractions(config)) return infinity;
   if (starts_by_force(config)) return motion::last_change_s(config.trigger);
   if (!is_forced(config)) return 0;
   const auto& n = config.nucleation;

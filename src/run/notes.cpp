@@ -117,8 +117,7 @@ void add_lengths(const input::Case& config, Notes& notes) {
     add_short(config.nucleation.profile == interface::NucleationProfile::smooth
                   ? "2 nucleation.half_length_m"
                   : "2 nucleation.half_length_m + taper_m",
-              2 * config.nucleation.half_length_m +
-                  (config.nucleation.reach_m() - config.nucleation.half_length_m));
+              config.nucleation.half_length_m + config.nucleation.reach_m());
   if (config.event == interface::EventKind::nucleation &&
       2 * config.nucleation.half_length_m > config.plate.width_m)
     notes.push_back(fmt::format(

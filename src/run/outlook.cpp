@@ -77,11 +77,6 @@ std::int64_t n_beyond_strength(const std::vector<Placed>& nodes) {
   });
 }
 
-bool loads_grow(const input::Case& config) {
-  return is_prestressed(config) &&
-         (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0);
-}
-
 /// Empty, or that growing tractions come to the strength of no node before the end.
 std::string doubt_of_growing_loads(const input::Case& config, const std::vector<Placed>& nodes) {
   const double t_rate = config.prestress.t_rate_Pa_per_s, p_rate = config.prestress.p_rate_Pa_per_s;
@@ -110,7 +105,7 @@ std::string doubt_of_beginning(const input::Case& config, const std::vector<Plac
     return fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once, without a front",
                        n_beyond, nodes.size());
   if (nodes.empty() || n_beyond > 0 || nodes.front().node.state) return {};
-  if (loads_grow(config)) return doubt_of_growing_loads(config, nodes);
+  if (has_growing_tractions(config)) return doubt_of_growing_loads(config, nodes);
   if (config.event == EventKind::none) return "event.kind = none, and t is below mu_s p at all nodes inside";
   if (input::is_pushed_at_edge(config) && config.trigger.amount < 1)
     return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below mu_s p",

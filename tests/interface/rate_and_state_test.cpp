@@ -94,7 +94,7 @@ TEST(RateAndState, AgesWhateverTheAge) {
   }
 }
 
-/// Where psi/a is beyond the range of doubles there is no friction, and no number that is none.
+/// Where exp(psi/a) underflows there is no friction, and the motion stays finite.
 TEST(RateAndState, ANodeWithoutFrictionGoesOn) {
   RateAndStateAging law;
   law.b = 10;

@@ -79,7 +79,7 @@ def test_mistakes_of_a_law():
 
     with pytest.raises(ZeroDivisionError, match="in the law"):
         slipfront.run_with_law(CASE, breaks, COULOMB)
-    for law, told in (
+    for law, message in (
         (lambda rate, slip: 1.0, r"mu\(0, 0\) is 1.0, the case's coefficient at rest 1.3"),
         (lambda rate, slip: np.where(slip > 0, np.nan, 1.3), "mu must be at least 0 and a finite number"),
         (lambda rate, slip: np.where(slip > 0, np.inf, 1.3), "mu must be at least 0 and a finite number"),
@@ -87,7 +87,7 @@ def test_mistakes_of_a_law():
         (lambda rate, slip: np.ones(3), "mu has 3 values, not 1"),
         (1.3, "mu is 1.3; it must be a function"),
     ):
-        with pytest.raises(slipfront.CaseError, match=told):
+        with pytest.raises(slipfront.CaseError, match=message):
             slipfront.run_with_law(CASE, law, COULOMB)
 
 
@@ -125,11 +125,11 @@ def test_a_copy_of_the_aging_law_moves_as_it():
         # Rounding, and the slope of mu, which is a difference here, of nodes that creep.
         assert np.abs(ours.history[name] - theirs.history[name]).max() < 1e-10 * scale, name
     assert theirs.history.slip_m.max() > 1e-6 and theirs.history.slip_rate_m_per_s.max() > 0.1
-    for wrong, told in (
+    for wrong, message in (
         (1.0, "evolve is 1.0; it must be a function"),
         (lambda dt, rate, psi: np.nan, "evolve must be a finite number"),
     ):
-        with pytest.raises(slipfront.CaseError, match=told):
+        with pytest.raises(slipfront.CaseError, match=message):
             slipfront.run_with_law(case, mu, evolve=wrong)
     with pytest.raises(slipfront.CaseError, match="mu is 0.6 without slip"):
         slipfront.run_with_law(case, lambda rate, psi: 0.6, evolve=evolve)

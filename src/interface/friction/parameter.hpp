@@ -39,6 +39,13 @@ concept HasState = requires {
   Law::states;
 };
 
+/// Whether mu rises with the slip rate somewhere; a law that can do so has this as a member.
+template <class Law>
+bool strengthens(const Law& law) {
+  if constexpr (requires { law.strengthens(); }) return law.strengthens();
+  return false;
+}
+
 /// What a friction law knows of the slip so far.
 enum class SlipMemory {
   none,         ///< nothing: the coefficient depends on the slip rate alone

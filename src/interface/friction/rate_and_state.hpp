@@ -65,8 +65,7 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
          {"V_i_m_per_s", &L::V_i_m_per_s, 1e-30, 1e3, "slip rate before the event"},
          {"theta_i_s", &L::theta_i_s, 0, 1e12,
           "theta before the event, exp((psi - f0)/b) d_c/V0; of it, V_i and prestress.t_Pa two decide the "
-          "third; "
-          "0: it follows from the others"}}};
+          "third; 0: it follows from the others"}}};
     if constexpr (weakens_strongly) {
       all[7] = {"f_w", &L::f_w, 0, 100, "coefficient of steady sliding far beyond V_w"};
       all[8] = {"V_w_m_per_s", &L::V_w_m_per_s, 1e-12, 1e3, "slip rate from which friction weakens"};
