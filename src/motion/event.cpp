@@ -75,6 +75,7 @@ Event EventRun::run() {
   event.time_s = stepper_.time_s();
   event.quiet_slip_rate_m_per_s = quiet_slip_rate_m_per_s_;
   event.record = record();
+  event.breakdown = stepper_.breakdown();
   event.energies = run_.get<EnergyRows>().take_rows();
   if (kept_) {
     event.history = std::move(kept_->history);

@@ -14,6 +14,7 @@
 #include "motion/observers/onsets.hpp"
 #include "motion/observers/progress.hpp"
 #include "motion/observers/rest_criterion.hpp"
+#include "record/breakdown.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
 
@@ -35,6 +36,7 @@ struct Event {
   double time_s = 0;
   double quiet_slip_rate_m_per_s = 0;  ///< slower slip that does not grow counts as none, see RestCriterion
   record::SlipRecord record;
+  record::Breakdown breakdown;
   record::History history;                 ///< without an output
   std::vector<Snapshot> snapshots;         ///< without an output
   record::ProbeRecord probes;              ///< without an output
@@ -43,7 +45,7 @@ struct Event {
   /// Without what an output would take.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(end, reason, steps, time_s, quiet_slip_rate_m_per_s, record, energies);
+    archive(end, reason, steps, time_s, quiet_slip_rate_m_per_s, record, breakdown, energies);
   }
 };
 

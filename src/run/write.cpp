@@ -13,6 +13,7 @@
 #include "results/folder.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
+#include "run/choices.hpp"
 #include "run/run.hpp"
 #include "run/snapshot_mesh.hpp"
 #include "run/snapshot_plan.hpp"
@@ -330,6 +331,8 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status) {
   results::write_fronts(dir / "fronts.csv", result.fronts);
+  results::write_fracture(dir / "fracture.csv", result.fronts, result.event.breakdown,
+                          bodies_of(result.config));
   results::write_energies(dir / "energy.csv", energies);
   write_json(dir, run_json(result, initial, status));
 }
