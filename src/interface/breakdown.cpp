@@ -26,18 +26,23 @@ double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i)
 
 void begin(const ContactModel& model, Interface& s, std::size_t i) {
   auto& b = s.breakdown;
-  s.breaking_state[i] = breaking;
+  s.breaking[i] = 1;
   b.peak_t_Pa[i] = s.strength_Pa[i];
   b.peak_coefficient[i] = (s.strength_Pa[i] - model.law_at(i).cohesion_Pa()) / pressure_Pa(model, s, i);
   b.least_coefficient[i] = b.counted_coefficient[i] = b.peak_coefficient[i];
   b.residual_t_Pa[i] = s.strength_Pa[i];
 }
 
+void end_breakdown(Interface& s, std::size_t i) {
+  s.breaking[i] = 0;
+  s.broken[i] = 1;
+}
+
 void follow(const ContactModel& model, double dt_s, double v_before_m_per_s, Interface& s, std::size_t i) {
   auto& b = s.breakdown;
   const double p_Pa = pressure_Pa(model, s, i);
   if (!(p_Pa > 0)) {
-    s.breaking_state[i] = broken;
+    end_breakdown(s, i);
     return;
   }
   const double t_Pa = std::abs(s.t_Pa[i]) - model.law_at(i).cohesion_Pa();
@@ -69,7 +74,7 @@ void follow(const ContactModel& model, double dt_s, double v_before_m_per_s, Int
     b.counted_slip_m[i] = b.slip_m[i];
   } else if (b.least_coefficient[i] < b.peak_coefficient[i] &&
              b.slip_m[i] > more_slip * b.counted_slip_m[i]) {
-    s.breaking_state[i] = broken;
+    end_breakdown(s, i);
   }
 }
 
@@ -79,13 +84,12 @@ void follow_breakdown(const ContactModel& model, double dt_s, std::span<const do
                       bool changed, Interface& s) {
   const std::size_t n = s.size();
   for (std::size_t i = 0; changed && i < n; ++i)
-    if (s.slipping[i] > s.breaking_state[i]) begin(model, s, i);  // slips and was intact
+    if (s.slipping[i] > (s.breaking[i] | s.broken[i])) begin(model, s, i);
   // Few nodes at a time: eight flags are looked at in one word.
-  constexpr std::uint64_t breaking_in_word = 0x0101010101010101U * breaking;
   for (std::size_t first = 0; first < n; first += sizeof(std::uint64_t)) {
     std::uint64_t flags = 0;
-    std::memcpy(&flags, &s.breaking_state[first], std::min(sizeof(flags), n - first));
-    for (flags &= breaking_in_word; flags != 0; flags &= flags - 1) {
+    std::memcpy(&flags, &s.breaking[first], std::min(sizeof(flags), n - first));
+    for (; flags != 0; flags &= flags - 1) {
       const auto i = first + static_cast<std::size_t>(std::countr_zero(flags)) / 8;
       follow(model, dt_s, v_before_m_per_s[i], s, i);
     }
@@ -97,7 +101,7 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
   const auto& b = s.breakdown;
   record::Breakdown of;
   for (std::size_t i = first; i < end; ++i) {
-    const bool begun = s.breaking_state[i] != unbroken && b.peak_t_Pa[i] > 0;
+    const bool begun = b.peak_t_Pa[i] > 0;
     const auto put = [&](std::vector<double>& to, double value) { to.push_back(begun ? value : nan); };
     // Of the traction at its peak above the residual one.
     const double p_Pa = (b.peak_t_Pa[i] - model.law_at(i).cohesion_Pa()) / b.peak_coefficient[i];
@@ -108,7 +112,7 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
     put(of.residual_coefficient, b.least_coefficient[i]);
     put(of.distance_m, fall_Pa > 0 ? 2 * b.work_J_per_m2[i] / fall_Pa : nan);
     put(of.time_s, fall_Pa > 0 ? 2 * b.impulse_Pa_s[i] / fall_Pa : nan);
-    put(of.complete, s.breaking_state[i] == broken ? 1 : 0);
+    put(of.complete, s.broken[i]);
   }
   return of;
 }

@@ -36,9 +36,6 @@ struct ContactModel {
   const FrictionLaw& law_at(std::size_t node) const { return of_nodes.empty() ? law : of_nodes[node]; }
 };
 
-/// How far the breakdown of friction at a node is, see follow_breakdown.
-enum Breaking : std::uint8_t { unbroken, breaking, broken };
-
 /// What is known of breakdowns under way and of those that have ended. All arrays [nodes]
 struct BreakdownState {
   // At the peak, the least, and the last fall that counts; coefficients are (|t| - cohesion)/p.
@@ -103,7 +100,7 @@ struct Interface {
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
   /// State variables of the friction law, see FrictionLaw::states.
   std::vector<std::vector<double>> law_states;
-  std::vector<std::uint8_t> breaking_state;  ///< a Breaking
+  std::vector<std::uint8_t> breaking, broken;  ///< 1 while, and after, friction breaks down at a node
   BreakdownState breakdown;
   bool is_forced = false;
   bool begun = false;  ///< whether there was an update since start_contact
@@ -131,7 +128,7 @@ struct InterfaceField {
 
 /// All arrays but those of the friction law and of breakdowns. One that is added here is allocated, sent in
 /// halos, kept in checkpoints and restored.
-inline constexpr std::array<InterfaceField, 19> interface_fields = {{
+inline constexpr std::array<InterfaceField, 20> interface_fields = {{
     {"initial_gap", "m", FieldKind::body, &Interface::initial_gap_m},
     {"mass_per_length", "kg/m2", FieldKind::body, &Interface::mass_per_length_kg_m2},
     {"tangential_mass_ratio", "1", FieldKind::body, &Interface::tangential_mass_ratio, 1},
@@ -150,7 +147,8 @@ inline constexpr std::array<InterfaceField, 19> interface_fields = {{
     {"target", "Pa", FieldKind::memory, &Interface::target_Pa},
     {"acceleration", "m/s2", FieldKind::memory, &Interface::acceleration_m_per_s2},
     {"locked", "1", FieldKind::memory, &Interface::locked},
-    {"breaking", "1", FieldKind::memory, &Interface::breaking_state},
+    {"breaking", "1", FieldKind::memory, &Interface::breaking},
+    {"broken", "1", FieldKind::memory, &Interface::broken},
 }};
 
 /// Calls f(kind, values) for each array, those of breakdowns and of the friction law last.

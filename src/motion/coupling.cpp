@@ -101,7 +101,7 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
     interface_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
     interface_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
     interface_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
-    interface_.breaking_state[i] = interface_.slipping[i] != 0 ? interface::broken : interface::unbroken;
+    interface_.broken[i] = interface_.slipping[i];
   }
   std::ranges::fill(interface_.intact, 1.0);
   start_contact(contact_, interface_);

@@ -32,7 +32,7 @@ void write_fronts(const std::filesystem::path& file, std::span<const fronts::Fro
 /// fracture::passage_fields, a row per front and node in the order of travel; what is undefined is left
 /// empty.
 void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
-                    const record::Breakdown& breakdown, const fracture::Bodies& bodies);
+                    const fracture::Recorded& recorded, const fracture::Bodies& bodies);
 
 /// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per
 /// instant; the first is the start.

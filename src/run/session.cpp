@@ -307,6 +307,7 @@ void Session::write_progress() {
   so_far.energies = {energies.front(), energies.back()};
   so_far.record = event_->record();
   so_far.breakdown = std::move(breakdown);
+  so_far.tip_slip = event_->tip_slip();
   auto result = unmeasured(config_, *stepper_, std::move(so_far));
   stream_->hand_over();
   result.stepping_wall_s = wall_s();

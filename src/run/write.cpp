@@ -331,7 +331,8 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status) {
   results::write_fronts(dir / "fronts.csv", result.fronts);
-  results::write_fracture(dir / "fracture.csv", result.fronts, result.event.breakdown,
+  results::write_fracture(dir / "fracture.csv", result.fronts,
+                          {result.event.record.x_m, result.event.breakdown, result.event.tip_slip},
                           bodies_of(result.config));
   results::write_energies(dir / "energy.csv", energies);
   write_json(dir, run_json(result, initial, status));
