@@ -158,6 +158,7 @@ def read_sem2dpack(header: str | os.PathLike[str], *, first_time_s: float = 0.0)
         table,
         f"not three or more numbers of {n_places} nodes",
     )
+    require(np.isfinite(cells), table, "a value is not finite")
     t_0, s_0 = np.array(cells).reshape(n_places, n_columns).T[:2]
 
     data = file.with_name(f"{stem}_sem2d.dat")
@@ -231,7 +232,9 @@ def read_uguca(
     def field(name: str, otherwise: str) -> np.ndarray:
         require(name in dumped, names, f"'{name}' was not dumped: {otherwise}")
         place = file.parent / told["folder_name"] / dumped[name]
-        return uguca_field(place, form, (len(time_s), len(x_m)))
+        values = uguca_field(place, form, (len(time_s), len(x_m)))
+        require(np.isfinite(values), place, "a value is missing or not finite")
+        return values
 
     def jump(name: str) -> np.ndarray:
         top = field(f"top_{name}", "dump it")
