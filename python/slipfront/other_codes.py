@@ -34,16 +34,23 @@ def lines_of(file: Path) -> Lines:
     return [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
 
 
+def fortran_number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return float(EXPONENT.sub(r"\1e\2", cell))
+
+
 def numbers(file: Path, lines: Lines, columns: int | None = None) -> np.ndarray:
     """Of lines with equally many numbers. [lines, columns]"""
     rows = []
     for k, line in lines:
-        cells = EXPONENT.sub(r"\1e\2", line).replace(",", " ").split()
+        cells = line.replace(",", " ").split()
         columns = len(cells) if columns is None else columns
         if len(cells) != columns:
             raise DataError(f"{file}:{k}: {len(cells)} numbers in place of {columns}")
         try:
-            rows.append([float(cell) for cell in cells])
+            rows.append(np.array([fortran_number(cell) for cell in cells]))
         except ValueError as error:
             raise DataError(f"{file}:{k}: {one_line(str(error))}") from None
     return np.array(rows).reshape(len(rows), columns or 0)
