@@ -46,6 +46,9 @@ if TYPE_CHECKING:
     from slipfront.onsets import read_onsets as read_onsets
     from slipfront.opened import OpenRun as OpenRun
     from slipfront.opened import open as open
+    from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
+    from slipfront.other_codes import read_sem2dpack as read_sem2dpack
+    from slipfront.other_codes import read_uguca as read_uguca
     from slipfront.running import info as info
     from slipfront.running import resume as resume
     from slipfront.running import run as run
@@ -87,6 +90,9 @@ _PLACES = {
     "read_onsets": "onsets",
     "OpenRun": "opened",
     "open": "opened",
+    "read_seissol_fault_receivers": "other_codes",
+    "read_sem2dpack": "other_codes",
+    "read_uguca": "other_codes",
     "info": "running",
     "resume": "running",
     "run": "running",
