@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/caller.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
