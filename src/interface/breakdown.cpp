@@ -15,7 +15,7 @@ namespace {
 
 /// A breakdown has ended where slip has gone on by this share without a fall of the coefficient that counts.
 constexpr double more_slip = 1.25;
-constexpr double fall_that_counts = 0.01;  ///< of the one so far
+constexpr double fall_that_counts = 1e-3;  ///< of the one so far
 
 /// On which the coefficient acts.
 double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i) {
