@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from slipfront.errors import Error as Error
     from slipfront.errors import WriteError as WriteError
     from slipfront.files import DataError as DataError
+    from slipfront.fracture import predict_fronts as predict_fronts
     from slipfront.material import stable_step_s as stable_step_s
     from slipfront.material import wave_speeds as wave_speeds
     from slipfront.material import well_posedness as well_posedness
-    from slipfront.fracture import predict_fronts as predict_fronts
     from slipfront.measures import FrontSettings as FrontSettings
     from slipfront.measures import criteria as criteria
     from slipfront.measures import find_fronts as find_fronts

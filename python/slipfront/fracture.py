@@ -86,9 +86,13 @@ def predict_fronts(
     energies = along_x(energy, "fracture_energy_J_per_m2", above=0)
     residuals = along_x(residual, "residual_coefficient", above=None)
     places = np.union1d(energies[0], residuals[0])
-    at_places = [np.interp(places, *pair) if len(pair[1]) else np.zeros(0) for pair in (energies, residuals)]
+
+    def at_places(given: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        return np.interp(places, *given) if len(given[1]) else given[1]
+
     at = None if at_x_m is None else number(at_x_m, "at_x_m", finite=True)
-    found = _core.predict_fronts(make_case(case, changes, tables), places, *at_places, at)
+    prepared = make_case(case, changes, tables)
+    found = _core.predict_fronts(prepared, places, at_places(energies), at_places(residuals), at)
     points = {
         name: xr.Variable(("point",), values, attributes(name))
         for name, values in found.pop("points").items()

@@ -54,7 +54,7 @@ LONG_NAMES = {
     "peak_t_Pa": "largest tangential traction, where slip begins",
     "residual_t_Pa": "residual tangential traction",
     "residual_coefficient": "least ratio of t, less the cohesion, to p behind the tip",
-    "weakening_distance_m": "slip of a linear fall from peak to residual traction with the same breakdown work",
+    "weakening_distance_m": "slip of a linear fall to the residual traction with the same breakdown work",
     "weakening_time_s": "time of a fall linear in time with the same impulse above the residual traction",
     "breakdown_complete": "1 where the breakdown came to its end",
     "stress_drop_Pa": "tangential traction before the event less the residual one",

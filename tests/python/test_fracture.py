@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fracture mechanics of a run's fronts, and fronts predicted as cracks."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+import slipfront
+from common import refusal, require_done
+from package_cases import program
+
+# Alike bodies; Gamma = (mu_s - mu_k) p d_c/2 = 2 J/m2, 11 elements in the process zone.
+BODY = """
+youngs_modulus_Pa = 5.6e9
+poissons_ratio = 0.33
+density_kg_per_m3 = 1180
+stiffness_damping_s = 0.05e-6
+"""
+CASE = f"""
+[plate]
+width_m = 0.3
+height_m = 0.1
+element_size_m = 1e-3
+corner = "none"
+sides = "absorbing"
+top = "absorbing"
+[material]{BODY}plane = "stress"
+[base]
+kind = "body"
+height_m = 0.1
+sides = "absorbing"
+bottom = "absorbing"{BODY}[loading]
+method = "prestress"
+[prestress]
+t_Pa = 2.5e6
+p_Pa = 5e6
+[friction]
+law = "slip_weakening"
+mu_s = 0.6
+mu_k = 0.4
+d_c_m = 4e-6
+[event]
+kind = "nucleation"
+[nucleation]
+form = "weakened"
+x_m = 0.15
+half_length_m = 15e-3
+taper_m = 4e-3
+[time]
+end_s = 140e-6
+quiet_s = inf
+[fronts]
+l_star_m = 3e-3
+[output]
+history_interval_s = 0.5e-6
+"""
+GAMMA = 2.0
+C_R = 1227.6
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return slipfront.run(CASE, output=tmp_path_factory.mktemp("fracture") / "out", progress=False)
+
+
+def complete(run):
+    """Points of the front to the right, outside the patch, whose breakdown came to its end."""
+    table = run.fracture
+    chosen = (table.breakdown_complete == 1) & (table.direction == 1) & (table.x_m > 0.18)
+    return table.isel(point=chosen.to_numpy())
+
+
+def test_breakdown_work_is_the_fracture_energy(run):
+    points = complete(run)
+    assert points.sizes["point"] > 60
+    # Steps of slip in the zone: the work is of first order in them.
+    np.testing.assert_allclose(points.breakdown_work_J_per_m2, GAMMA, rtol=1e-3)
+    np.testing.assert_allclose(points.peak_t_Pa, 3e6, rtol=1e-6)
+    np.testing.assert_allclose(points.residual_t_Pa, 2e6, rtol=1e-6)
+    np.testing.assert_allclose(points.stress_drop_Pa, 0.5e6, rtol=1e-6)
+    np.testing.assert_allclose(points.weakening_distance_m, 4e-6, rtol=1e-3)
+    known = points.cohesive_zone_m.notnull().to_numpy()
+    np.testing.assert_allclose(
+        points.cohesive_zone_m[known], (points.v_tip_m_per_s * points.weakening_time_s)[known]
+    )
+    assert points.K_Pa_sqrt_m.attrs["units"] == "Pa m1/2"
+
+
+def test_slip_behind_the_tip_gives_the_same_energy(run):
+    points = complete(run)
+    slow = points.isel(point=(points.v_tip_m_per_s < 0.9 * C_R).to_numpy())
+    G = slow.G_slip_J_per_m2.dropna("point")
+    assert G.sizes["point"] > 10
+    # The cohesive zone is a tenth of the half-length.
+    assert abs(float(G.median()) / GAMMA - 1) < 0.1
+
+
+def test_friction_work_is_breakdown_and_heat(run):
+    work = run.info["friction_work"]
+    whole = -float(run.energies.friction_work_J_per_m[-1])
+    assert work["breakdown_J_per_m"] + work["residual_J_per_m"] == pytest.approx(whole)
+    # Every node that has broken takes Gamma, the weakened patch less.
+    assert 0.9 * GAMMA * 0.24 < work["breakdown_J_per_m"] < GAMMA * 0.3
+
+
+def test_speeds_are_predicted(run):
+    predicted = slipfront.predict_fronts(CASE)
+    assert predicted.attrs["starts"] and predicted.attrs["arrests"] == []
+    right = predicted.isel(point=(predicted.direction == 1).to_numpy())
+    points = complete(run)
+    inside = points.isel(point=((points.x_m > 0.2) & (points.x_m < 0.28)).to_numpy())
+    expected = np.interp(inside.x_m, right.x_m, right.v_tip_m_per_s)
+    ratio = inside.v_tip_m_per_s.to_numpy() / expected
+    assert np.nanmedian(abs(ratio - 1)) < 0.1  # as far as the zone is short against the crack
+
+
+def test_a_run_predicts_by_its_own_friction(run):
+    by_law, by_run = slipfront.predict_fronts(CASE), slipfront.predict_fronts(run)
+    np.testing.assert_allclose(by_run.fracture_energy_J_per_m2, GAMMA, rtol=1e-3)
+    n = min(by_law.sizes["point"], by_run.sizes["point"])
+    assert n > 200
+    np.testing.assert_allclose(by_run.x_m[:n], by_law.x_m[:n])
+
+
+def test_the_program_predicts_the_same(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    said = require_done(program("fracture", "case.toml", "-o", "fronts.csv", cwd=tmp_path)).stdout
+    assert "first crack 0.034 m: it runs" in said
+    assert said.count("through to the end of the contact") == 2
+    with open(tmp_path / "fronts.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    predicted = slipfront.predict_fronts(CASE)
+    for name in ("x_m", "G_static_J_per_m2", "v_tip_m_per_s", "time_s"):
+        np.testing.assert_array_equal([float(row[name]) for row in rows], predicted[name])
+
+
+def test_arrest_where_the_bodies_get_tougher():
+    x_m = np.array([0.0, 0.0799, 0.08, 0.22, 0.2201, 0.3])
+    energy = np.array([1e3, 1e3, GAMMA, GAMMA, 1e3, 1e3])
+    predicted = slipfront.predict_fronts(CASE, fracture_energy_J_per_m2=(x_m, energy))
+    assert predicted.attrs["arrests"] == [-1, 1]
+    last = predicted.isel(point=np.isnan(predicted.time_s).to_numpy())
+    np.testing.assert_allclose(last.x_m, [0.079, 0.221], atol=1.1e-3)
+
+
+def test_a_short_crack_waits():
+    predicted = slipfront.predict_fronts(CASE, at_x_m=0.15)
+    assert not predicted.attrs["starts"]
+    # Griffith: 2 E Gamma/(pi drop^2), to one element.
+    assert predicted.attrs["critical_length_m"] == pytest.approx(2 * 5.6e9 * GAMMA / (np.pi * 0.25e12), abs=1e-3)
+
+
+def test_info_tells_cracks_in_short(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    assert "fronts as cracks                the first crack, 0.034 m, runs\n" in require_done(
+        program("info", "case.toml", cwd=tmp_path)
+    ).stdout
+
+
+def test_the_sample_with_a_held_edge():
+    plate = {"plate.top": "loaded", "plate.sides": "free", "base.sides": "free", "base.bottom": "held"}
+    held = slipfront.predict_fronts(CASE, {"plate.top": "loaded", "plate.sides": "free"})
+    assert plate and held.attrs["bodies"] == "the sample, its far edges held"
+    open_ = slipfront.predict_fronts(CASE)
+    # Held edges take what the crack would release beyond them.
+    last = held.isel(point=(held.direction == 1).to_numpy()).G_static_J_per_m2[60]
+    assert float(last) < float(open_.isel(point=(open_.direction == 1).to_numpy()).G_static_J_per_m2[60])
+
+
+@pytest.mark.parametrize(
+    "given, said",
+    [
+        ({"friction.law": "velocity_weakening"}, "has no fracture energy of its own"),
+    ],
+)
+def test_refused(given, said):
+    case = CASE.replace('law = "slip_weakening"', 'law = "velocity_weakening"').replace("d_c_m = 4e-6", "")
+    with pytest.raises(slipfront.CaseError, match=said):
+        slipfront.predict_fronts(case)
+    assert given
+
+
+@pytest.mark.parametrize(
+    "options, said",
+    [
+        ({"fracture_energy_J_per_m2": 0.0}, "must be above 0"),
+        ({"fracture_energy_J_per_m2": "much"}, "must be a number"),
+        ({"fracture_energy_J_per_m2": ([0.1, 0.0], [1.0, 1.0])}, "x ascending"),
+        ({"fracture_energy_J_per_m2": ([0.0, 0.1], [1.0])}, "2 places and 1 values"),
+        ({"residual_coefficient": np.nan}, "must be finite"),
+        ({"at_x_m": np.inf}, "must be finite"),
+    ],
+)
+def test_options_refused(options, said):
+    with pytest.raises(slipfront.CaseError, match=said):
+        slipfront.predict_fronts(CASE, **options)
+
+
+def test_the_program_refuses(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE.replace('law = "slip_weakening"', 'law = "coulomb"\n#').replace(
+        "mu_s = 0.6", "").replace("mu_k = 0.4", "").replace("d_c_m = 4e-6", ""))
+    assert "give it by --fracture-energy" in refusal(program("fracture", "case.toml", cwd=tmp_path))
+    assert refusal(program("fracture", "case.toml", "--fracture-energy", "-1", cwd=tmp_path))
+
+
+def test_a_folder_without_the_table_is_an_old_one(run, tmp_path):
+    assert json.loads((run.folder / "run.json").read_text())["friction_work"]
