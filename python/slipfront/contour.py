@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from slipfront.errors import CaseError
 from slipfront.files import DataError, read_table
 from slipfront.folder import result_file
 from slipfront.given import instance, number, whole
@@ -31,16 +30,17 @@ class ContourIntegral:
     G_J_per_m2: float
     elastic_J_per_m2: float  # strain energy and work of the stress through the box's edge
     kinetic_J_per_m2: float  # kinetic energy through it
-    unsteady_J_per_m2: float  # change of what moves with the box; 0 with a single snapshot
+    unsteady_J_per_m2: float  # change of the momentum that moves with the box
     damping_J_per_m2: float  # less what the stiffness damping takes inside
     stress_drop_J_per_m2: float  # work of t before the event less the residual traction inside
+    breakdown_J_per_m2: float  # what G is to be: work of t less the residual traction, by interface.h5
     time_s: float
     tip_m: float
     v_tip_m_per_s: float  # along x, below 0 to the left
     breakdown_zone_m: float  # behind the tip, in which t is above the residual traction
     half_width_m: float
     height_m: float
-    n_snapshots: int  # 1: motion taken as steady; 2, 3: with those next to it
+    n_snapshots: int  # 3: with those before and after; 2: with one of them, to the first order in their distance
 
 
 @dataclass(frozen=True)
@@ -262,8 +262,8 @@ def contour_integral(
     """Energy release rate of a front's tip by the fields in a box around it: what flows through the box less
     what friction takes at the residual traction; for slip weakening the fracture energy.
 
-    time_s: of a snapshot. Those before and after it within the time that the tip takes for a quarter of the
-    box give the change that is not steady; without any the motion is taken as steady.
+    time_s: of a snapshot. Those before and after it, or one of them, tell the change that is not steady; the
+    tip is to run at most half of half_width_m meanwhile.
     front: its id in fronts.csv.
     half_width_m: of the box to each side of the tip, by default five cohesive zones. Friction must come down
     within half of it. height_m: of the box above, and below, the interface; by default half_width_m.
@@ -292,18 +292,21 @@ def contour_integral(
             f"{run.folder}: a box of {half_width:g} m to each side of the tip at {tip.x_m:g} m, and {height:g} "
             "m high, does not lie in the bodies"
         )
-    drop, zone = stress_drop_work(run, fields, step, tip, box)
+    drop, breakdown, zone = works_on_the_interface(run, fields, step, tip, box)
     steady = fields.integrals(step, box, tip.v_m_per_s)
     near = neighbours(fields, step, box, tip.v_m_per_s)
+    if len(near) < 2:
+        raise DataError(
+            f"{run.folder}: no snapshot within {PLATEAU * half_width / abs(tip.v_m_per_s):.2g} s of that at "
+            f"{time:g} s; the change of the motion is not known"
+        )
     momentum = [
         fields.integrals(k, moved(box, tip.v_m_per_s * (fields.time_s[k] - time)), tip.v_m_per_s)["momentum"]
         for k in near
     ]
     since = fields.time_s[near] - time
-    scale = np.abs(since).max() or 1.0
-    rate = 0.0
-    if len(near) > 1:
-        rate = float(np.polyfit(since / scale, momentum, len(near) - 1)[-2]) / scale
+    scale = np.abs(since).max()
+    rate = float(np.polyfit(since / scale, momentum, len(near) - 1)[-2]) / scale
     d = tip.direction
     parts = {
         "elastic_J_per_m2": d * steady["elastic"],
@@ -315,6 +318,7 @@ def contour_integral(
     return ContourIntegral(
         G_J_per_m2=sum(parts.values()),
         **parts,
+        breakdown_J_per_m2=d * breakdown,
         time_s=time,
         tip_m=tip.x_m,
         v_tip_m_per_s=tip.v_m_per_s,
@@ -341,10 +345,11 @@ def neighbours(fields: Fields, step: int, box: Box, v_m_per_s: float) -> list[in
     return [k for k in (step - 1, step, step + 1) if k == step or is_near(k)]
 
 
-def stress_drop_work(
+def works_on_the_interface(
     run: OpenRun, fields: Fields, step: int, tip: Tip, box: Box
-) -> tuple[float, float]:
-    """-int q (t before the event - residual t) d(slip)/dx dx, and the length of the breakdown zone."""
+) -> tuple[float, float, float]:
+    """-int q (t before the event - residual t) d(slip)/dx dx, the same of t - residual t, and the length of
+    the breakdown zone."""
     folder: Path = run.folder
     case = run.case
     time = float(fields.time_s[step])
@@ -371,10 +376,16 @@ def stress_drop_work(
         )
     sign = np.sign(slip[np.argmax(np.abs(slip))])
     residual = np.where(behind < zone, sign * residual, t)
-    before = np.interp(x, run.tractions["x_m"].to_numpy(), run.tractions["t_s_Pa"].to_numpy())
+    require(p > 0, folder, "the interface opens in the box")
+    if case["event"]["kind"] == "spontaneous":  # begins beyond the common state
+        before = history_at(run, "t_Pa", x, 0.0, 0.0)
+    else:
+        before = np.interp(x, run.tractions["x_m"].to_numpy(), run.tractions["t_s_Pa"].to_numpy())
     before = before + case.get("prestress", {}).get("t_rate_Pa_per_s", 0.0) * time
-    density = box.weight(x, 0.0) * (before - residual)
-    return -float(np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(slip))), zone
 
+    def work(stress_Pa: np.ndarray) -> float:
+        density = box.weight(x, 0.0) * stress_Pa
+        return -float(np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(slip)))
 
-_ = CaseError
+    return work(before - residual), work(t - residual), zone
+
