@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from slipfront.material import stable_step_s as stable_step_s
     from slipfront.material import wave_speeds as wave_speeds
     from slipfront.material import well_posedness as well_posedness
+    from slipfront.fracture import predict_fronts as predict_fronts
     from slipfront.measures import FrontSettings as FrontSettings
     from slipfront.measures import criteria as criteria
     from slipfront.measures import find_fronts as find_fronts
@@ -84,6 +85,7 @@ _PLACES = {
     "stable_step_s": "material",
     "wave_speeds": "material",
     "well_posedness": "material",
+    "predict_fronts": "fracture",
     "FrontSettings": "measures",
     "criteria": "measures",
     "find_fronts": "measures",

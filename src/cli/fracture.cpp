@@ -13,7 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/print.hpp"
-#include "files/text.hpp"
+#include "files/files.hpp"
 #include "run/choices.hpp"
 
 namespace slipfront::cli {
