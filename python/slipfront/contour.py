@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from slipfront.files import DataError, read_table
-from slipfront.folder import result_file
+from slipfront.files import DataError
 from slipfront.given import instance, number, whole
 from slipfront.opened import OpenRun
 from slipfront.read import read_fronts, require
@@ -20,6 +19,14 @@ ZONES = 5  # half the default box's width over the length in which friction weak
 PLATEAU = 0.5  # share of the box, from its middle, in which the weight is 1
 OVER = 0.01  # share of the fall of traction, or of slip, that counts as none
 GAUSS = tuple((a, b) for a in (-(3**-0.5), 3**-0.5) for b in (-(3**-0.5), 3**-0.5))
+BREAKDOWN = (
+    "x_m",
+    "breakdown_complete",
+    "residual_coefficient",
+    "peak_t_Pa",
+    "residual_t_Pa",
+    "cohesive_zone_m",
+)
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
 
 
@@ -40,7 +47,9 @@ class ContourIntegral:
     breakdown_zone_m: float  # behind the tip, in which t is above the residual traction
     half_width_m: float
     height_m: float
-    n_snapshots: int  # 3: with those before and after; 2: with one of them, to the first order in their distance
+    n_snapshots: (
+        int  # 3: with those before and after; 2: with one of them, to the first order in their distance
+    )
 
 
 @dataclass(frozen=True)
@@ -204,20 +213,10 @@ def tip_of(run: OpenRun, front: int, time_s: float, half_width_m: float | None) 
             f"{path.onset_s[-1]:g} s"
         )
     file = run.folder / "fracture.csv"
-    table = read_table(result_file(file))
-    columns = {
-        name: table.numbers(name)
-        for name in (
-            "front_id",
-            "x_m",
-            "breakdown_complete",
-            "residual_coefficient",
-            "peak_t_Pa",
-            "residual_t_Pa",
-            "cohesive_zone_m",
-        )
-    }
-    rows = (columns["front_id"] == front) & (columns["breakdown_complete"] == 1)
+    table = run.fracture
+    require("breakdown_complete" in table, file, "missing: the run is of an earlier version")
+    columns = {name: table[name].to_numpy() for name in BREAKDOWN}
+    rows = (table["front_id"].to_numpy() == front) & (columns["breakdown_complete"] == 1)
     require(rows.any(), file, f"friction of front {front} has not come down to a residual one anywhere")
     order = np.argsort(columns["x_m"][rows])
     breakdown = {name: values[rows][order] for name, values in columns.items()}
@@ -289,8 +288,8 @@ def contour_integral(
     box = Box(tip.x_m, half_width, height)
     if not fields.holds(box):
         raise DataError(
-            f"{run.folder}: a box of {half_width:g} m to each side of the tip at {tip.x_m:g} m, and {height:g} "
-            "m high, does not lie in the bodies"
+            f"{run.folder}: a box of {half_width:g} m to each side of the tip at {tip.x_m:g} m, and "
+            f"{height:g} m high, does not lie in the bodies"
         )
     drop, breakdown, zone = works_on_the_interface(run, fields, step, tip, box)
     steady = fields.integrals(step, box, tip.v_m_per_s)
@@ -306,7 +305,7 @@ def contour_integral(
     ]
     since = fields.time_s[near] - time
     scale = np.abs(since).max()
-    rate = float(np.polyfit(since / scale, momentum, len(near) - 1)[-2]) / scale
+    rate = float(np.polyfit(since / scale, momentum, len(near) - 1)[-2] / scale)
     d = tip.direction
     parts = {
         "elastic_J_per_m2": d * steady["elastic"],
@@ -316,7 +315,7 @@ def contour_integral(
         "stress_drop_J_per_m2": d * drop,
     }
     return ContourIntegral(
-        G_J_per_m2=sum(parts.values()),
+        G_J_per_m2=float(sum(parts.values())),
         **parts,
         breakdown_J_per_m2=d * breakdown,
         time_s=time,
@@ -371,8 +370,8 @@ def works_on_the_interface(
     zone = float(done.min()) if done.size else np.inf
     if zone > PLATEAU * box.half_width_m:
         raise DataError(
-            f"{folder}: friction is above the residual one beyond {PLATEAU * box.half_width_m:g} m behind the "
-            "tip, half of half_width_m; take a wider box"
+            f"{folder}: friction is above the residual one beyond {PLATEAU * box.half_width_m:g} m behind "
+            "the tip, half of half_width_m; take a wider box"
         )
     sign = np.sign(slip[np.argmax(np.abs(slip))])
     residual = np.where(behind < zone, sign * residual, t)
@@ -388,4 +387,3 @@ def works_on_the_interface(
         return -float(np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(slip)))
 
     return work(before - residual), work(t - residual), zone
-
