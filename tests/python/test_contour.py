@@ -116,8 +116,12 @@ def test_what_the_fields_do_not_tell_is_refused(run):
         ({"output.snapshot_times_s": [30e-6, 40e-6]}, {}, "no snapshot within 7e-06 s of that at"),
         ({"nucleation.x_m": 0.12}, {}, "front 1 has no tip at 4.0"),
         (
-            {"output.snapshot_times_s": [14e-6, 15e-6], "nucleation.half_length_m": 0.016},
-            {"half_width_m": 0.045},
+            {
+                "output.snapshot_times_s": [14e-6, 15e-6],
+                "nucleation.half_length_m": 0.016,
+                "plate.width_m": 0.16,
+            },
+            {"half_width_m": 0.05},
             "more than one tip",
         ),
         (
