@@ -86,6 +86,25 @@ def stiffness_of(material: dict[str, Any], plane: str) -> np.ndarray:
     )
 
 
+def shapes(corners: np.ndarray, point: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of bilinear cells at a point of the unit square: shape functions [4], their gradients [cells, 4, 2] and
+    the area that the point stands for [cells]."""
+    side = 1 + CORNERS * point
+    slopes = 0.25 * CORNERS * side[:, ::-1]
+    jacobian = np.einsum("ak,caj->ckj", slopes, corners)
+    gradient = np.einsum("ak,cjk->caj", slopes, np.linalg.inv(jacobian))
+    return 0.25 * side[:, 0] * side[:, 1], gradient, np.linalg.det(jacobian)
+
+
+def at_nodes(cells: np.ndarray, values: np.ndarray, n_nodes: int) -> np.ndarray:
+    """Mean over the cells of a node, 0 at nodes of none. [nodes, 2]"""
+    sums, count = np.zeros((n_nodes, 2)), np.zeros((n_nodes, 1))
+    for nodes in cells.T:
+        np.add.at(sums, nodes, values)
+        np.add.at(count, nodes, 1)
+    return sums / np.maximum(count, 1)
+
+
 class Fields:
     """The snapshots of a run, as changes since the start, and integrals over them."""
 
@@ -154,14 +173,13 @@ class Fields:
         for body in self.bodies:
             cells = body.cells[np.any(q[body.cells] > 0, axis=1)]
             corners = np.stack([self.x_m[cells], self.y_m[cells]], axis=-1)
+            # du/dx + v/V, 0 where the motion is steady: in the middle of cells, then averaged at nodes
+            _, gradient, _ = shapes(corners, (0.0, 0.0))
+            change = np.einsum("cai,ca->ci", u[cells], gradient[:, :, 0]) + v[cells].mean(axis=1) / v_m_per_s
+            change = at_nodes(cells, change, len(u))
             for point in GAUSS:
-                side = 1 + CORNERS * point
-                shape = 0.25 * side[:, 0] * side[:, 1]
-                slopes = 0.25 * CORNERS * side[:, ::-1]
-                jacobian = np.einsum("ak,caj->ckj", slopes, corners)
-                gradient = np.einsum("ak,cjk->caj", slopes, np.linalg.inv(jacobian))
-                area = np.linalg.det(jacobian)
-                du, dv = (np.einsum("cai,caj->cij", f[cells], gradient) for f in (u, v))
+                shape, gradient, area = shapes(corners, point)
+                du, dv, dc = (np.einsum("cai,caj->cij", f[cells], gradient) for f in (u, v, change))
                 dq = np.einsum("ca,caj->cj", q[cells], gradient)
                 here_q, here_v = q[cells] @ shape, np.einsum("cai,a->ci", v[cells], shape)
                 stress, damping = (np.einsum("ijkl,ckl->cij", body.stiffness_Pa, f) for f in (du, dv))
@@ -170,9 +188,10 @@ class Fields:
                 T = 0.5 * body.rho_kg_per_m3 * np.sum(here_v**2, axis=1)
                 W = 0.5 * np.sum(stress * du, axis=(1, 2))
                 flux = np.einsum("cij,ci,cj->c", stress + damping, du[:, :, 0], dq)
+                taken = np.sum(damping * (dc - dv / v_m_per_s), axis=(1, 2))
                 sums["elastic"] += np.sum(area * (flux - W * dq[:, 0]))
                 sums["kinetic"] += np.sum(area * (T + v_m_per_s * momentum) * dq[:, 0])
-                sums["damping"] -= np.sum(area * np.sum(damping * dv, axis=(1, 2)) * here_q) / v_m_per_s
+                sums["damping"] += np.sum(area * taken * here_q)
                 sums["momentum"] += np.sum(area * momentum * here_q)
         return {name: float(value) for name, value in sums.items()}
 
