@@ -16,6 +16,7 @@ from slipfront.opened import OpenRun
 from slipfront.read import read_fronts, require
 
 ZONES = 5  # half the default box's width over the length in which friction weakens
+SPEED_ZONES = 2  # to each side of the tip, over which its speed is taken
 PLATEAU = 0.5  # share of the box, from its middle, in which the weight is 1
 OVER = 0.01  # share of the fall of traction, or of slip, that counts as none
 GAUSS = tuple((a, b) for a in (-(3**-0.5), 3**-0.5) for b in (-(3**-0.5), 3**-0.5))
@@ -221,7 +222,7 @@ class Tip:
     breakdown: dict[str, np.ndarray]  # columns of fracture.csv at nodes where it is complete, by x
 
 
-def tip_of(run: OpenRun, front: int, time_s: float, half_width_m: float | None) -> Tip:
+def tip_of(run: OpenRun, front: int, time_s: float) -> Tip:
     fronts = {found.id: found for found in read_fronts(run.folder / "fronts.csv")}
     require(front in fronts, run.folder / "fronts.csv", f"no front {front}")
     path = fronts[front]
@@ -243,8 +244,8 @@ def tip_of(run: OpenRun, front: int, time_s: float, half_width_m: float | None) 
     known = np.isfinite(zones)
     require(known.any(), file, f"front {front} has no cohesive zone")
     zone = float(np.interp(x_tip, breakdown["x_m"][known], zones[known]))
-    near = np.abs(path.x_m - x_tip) <= PLATEAU * (half_width_m or ZONES * zone)
-    require(near.sum() > 1, run.folder / "fronts.csv", f"front {front} has no speed at {time_s:g} s")
+    away = np.abs(path.x_m - x_tip)
+    near = np.argsort(away)[: max(4, int(np.sum(away <= SPEED_ZONES * zone)))]
     slowness = float(np.polyfit(path.x_m[near] - x_tip, path.onset_s[near] - time_s, 1)[0])
     require(slowness * path.direction > 0, run.folder / "fronts.csv", f"front {front} has no speed")
     return Tip(x_tip, path.direction, 1 / slowness, zone, breakdown)
@@ -301,7 +302,7 @@ def contour_integral(
         run.folder / "fields.vtkhdf",
         f"no snapshot at {given:g} s; the nearest is at {time:g} s",
     )
-    tip = tip_of(run, front, time, half_width)
+    tip = tip_of(run, front, time)
     half_width = ZONES * tip.zone_m if half_width is None else half_width
     height = half_width if height_m is None else number(height_m, "height_m", above=0, finite=True)
     box = Box(tip.x_m, half_width, height)
