@@ -36,6 +36,7 @@ AT_S = 40e-6
 PLAIN = {"law": "slip_weakening", "mu_s": 0.6, "mu_k": 0.4, "d_c_m": 2.2e-6}
 RIGID = {name: table for name, table in CASE.items() if name != "base"} | {
     "friction": PLAIN,
+    "output": CASE["output"] | {"history_interval_s": 3e-6},  # p is found between rows, which the tip passes
     "nucleation": {"x_m": 0.05, "half_length_m": 0.02, "taper_m": 0.005},
 }
 PRESSED = {  # by statics: p is not uniform, corners are relieved
@@ -47,6 +48,13 @@ PRESSED = {  # by statics: p is not uniform, corners are relieved
     "nucleation": {"half_length_m": 0.015, "taper_m": 0.005},
     "time": {"end_s": 75e-6},
     "output": {"snapshot_times_s": [0.0, 59e-6, 60e-6, 61e-6]},
+}
+
+SPONTANEOUS = {name: table for name, table in PRESSED.items() if name != "nucleation"} | {
+    "loading": {"mean_pressure_Pa": 5e6, "tilt_difference_m": 2e-5},
+    "event": {"kind": "spontaneous"},
+    "time": {"end_s": 120e-6},
+    "output": {"snapshot_times_s": [0.0, 89e-6, 90e-6, 91e-6]},
 }
 
 
@@ -71,6 +79,19 @@ def test_G_is_the_fracture_energy_of_slip_weakening_in_any_box(run, front, half_
     assert all(abs(part) > 2 * bound * GAMMA_J_PER_M2 for part in parts)  # none could be missing unnoticed
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"prestress": {"t_Pa": -2.25e6, "p_Pa": 5e6, "t_rate_Pa_per_s": -4e9}},  # to -2.41 MPa at the time
+        {"friction": {"law": "slip_table", "table_slip_m": [0, 2.2e-6, 8e-6], "table_mu": [0.6, 0.4, 0.43]}},
+    ],
+    ids=["slip to -x under a growing load", "friction that rises again"],
+)
+def test_so_it_is_with(changes):
+    found = contour_integral(slipfront.run(CASE | changes), time_s=AT_S, front=0, half_width_m=14e-3)
+    assert found.G_J_per_m2 == pytest.approx(GAMMA_J_PER_M2, rel=share_of_elements(found))
+
+
 def test_the_error_falls_with_the_square_of_the_element_size():
     def error(size_m):
         run = slipfront.run(CASE, {"plate.element_size_m": size_m})
@@ -81,7 +102,9 @@ def test_the_error_falls_with_the_square_of_the_element_size():
 
 
 @pytest.mark.parametrize(
-    "case, time_s, front", [(RIGID, AT_S, 1), (PRESSED, 60e-6, 0)], ids=["prescribed", "statics"]
+    "case, time_s, front",
+    [(RIGID, AT_S, 1), (PRESSED, 60e-6, 0), (SPONTANEOUS, 90e-6, 0)],
+    ids=["prescribed", "statics", "spontaneous"],
 )
 def test_on_a_rigid_plane_friction_follows_the_pressure(case, time_s, front):
     run = slipfront.run(case)
