@@ -376,6 +376,9 @@ def works_on_the_interface(
     inside = np.abs(x - box.x_m) <= box.half_width_m * (1 + 1e-9)
     x, slip = x[inside], slip[inside]
     behind = tip.direction * (tip.x_m - x)
+    require(
+        (behind < 0).any() and (behind > 0).any(), folder, "no node in the box: half_width_m is too small"
+    )
     loaded = loads_beside_friction(case, run.tractions["x_m"].to_numpy())
     if loaded is not None and loaded[0] < x[-1] and x[0] < loaded[1]:
         raise DataError(f"{folder}: the box reaches into the zone of the trigger's or patch's traction")

@@ -130,6 +130,7 @@ def test_what_the_fields_do_not_tell_is_refused(run):
     assert "0.021 m high, does not lie in the bodies" in refused(run, height_m=0.021)
     assert "does not lie in the bodies" in refused(run, half_width_m=25e-3)
     assert "take a wider box" in refused(run, half_width_m=6e-3)
+    assert "half_width_m is too small" in refused(run, half_width_m=1e-5)
     assert "half_width_m is 0; it must be above 0" in refused(run, slipfront.CaseError, half_width_m=0)
     assert "must be a slipfront.OpenRun" in refused("out", slipfront.CaseError)
 
