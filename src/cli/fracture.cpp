@@ -14,6 +14,7 @@
 #include "cli/output.hpp"
 #include "cli/print.hpp"
 #include "files/files.hpp"
+#include "fracture/prediction.hpp"
 #include "run/choices.hpp"
 
 namespace slipfront::cli {

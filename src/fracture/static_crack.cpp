@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
@@ -25,6 +26,20 @@ SlipResponse response_of_half_spaces(const Bodies& bodies, const std::vector<dou
     // i k slip is d slip/dx.
     if (k + 1 < n) response.p_per_slip(k, k + 1) = N / (2 * h);
     if (k > 0) response.p_per_slip(k, k - 1) = -N / (2 * h);
+  }
+  return response;
+}
+
+SlipResponse response_of_sample(const Eigen::MatrixXd& S, std::vector<double> x_m,
+                                const std::vector<double>& tributary_m) {
+  const auto n = std::ssize(x_m);
+  SlipResponse response{std::move(x_m), Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double length_m = tributary_m[static_cast<std::size_t>(k)];
+    for (Eigen::Index j = 0; j < n; ++j) {
+      response.t_per_slip(k, j) = -S(2 * k, 2 * j) / length_m;
+      response.p_per_slip(k, j) = S(2 * k + 1, 2 * j) / length_m;
+    }
   }
   return response;
 }

@@ -20,6 +20,13 @@ struct SlipResponse {
 /// @pre nodes at equal distances
 SlipResponse response_of_half_spaces(const Bodies& bodies, const std::vector<double>& x_m);
 
+/// Of a sample.
+/// @param stiffness_N_per_m  condensed to the interface: forces of the contact on the plate by relative
+/// displacements,
+///                           x and y of each node in turn
+SlipResponse response_of_sample(const Eigen::MatrixXd& stiffness_N_per_m, std::vector<double> x_m,
+                                const std::vector<double>& tributary_m);
+
 /// What a crack along the interface releases. [nodes]
 struct CrackLoads {
   std::vector<double> t_Pa, p_Pa;            ///< before it

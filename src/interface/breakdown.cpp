@@ -15,7 +15,7 @@ namespace {
 
 /// A breakdown has ended where slip has gone on by this share without a fall of the coefficient that counts.
 constexpr double more_slip = 1.25;
-constexpr double fall_that_counts = 0.01;  ///< of the one so far
+constexpr double fall_that_counts = 1e-3;  ///< of the one so far
 
 /// On which the coefficient acts.
 double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i) {
@@ -112,7 +112,7 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
     put(of.residual_coefficient, b.least_coefficient[i]);
     put(of.distance_m, fall_Pa > 0 ? 2 * b.work_J_per_m2[i] / fall_Pa : nan);
     put(of.time_s, fall_Pa > 0 ? 2 * b.impulse_Pa_s[i] / fall_Pa : nan);
-    put(of.complete, s.broken[i]);
+    of.complete.push_back(begun ? s.broken[i] : 0);
   }
   return of;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "fracture/prediction.hpp"
 #include "input/schema.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"

@@ -13,7 +13,7 @@ namespace slipfront::record {
 /// [nodes]
 ///
 /// The residual coefficient is the least (|t| - cohesion)/p from the beginning of slip on, until slip has
-/// gone on by a quarter without a fall that counts, of 1 % of the one so far. Residual traction is the
+/// gone on by a quarter without a fall that counts, of 0.1 % of the one so far. Residual traction is the
 /// cohesion and the residual coefficient times p, at each time.
 struct Breakdown {
   std::vector<double> work_J_per_m2, peak_t_Pa, residual_t_Pa, residual_coefficient, distance_m, time_s;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/caller.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
@@ -59,17 +60,8 @@ fracture::SlipResponse response_of_sample(const input::Case& config, const Initi
     base = std::make_shared<const Factorisation>(*initial.base, input::base_material(config),
                                                  statics::TopConstraint::both);
   const statics::CondensedInterface interface(plate, base);
-  const auto& S = interface.stiffness();
-  const auto n = std::ssize(initial.tributary_m);
-  fracture::SlipResponse response{interface_x_m(initial.mesh), Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n)};
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double length_m = initial.tributary_m[static_cast<std::size_t>(k)];
-    for (Eigen::Index j = 0; j < n; ++j) {
-      response.t_per_slip(k, j) = -S(2 * k, 2 * j) / length_m;
-      response.p_per_slip(k, j) = S(2 * k + 1, 2 * j) / length_m;
-    }
-  }
-  return response;
+  return fracture::response_of_sample(interface.stiffness(), interface_x_m(initial.mesh),
+                                      initial.tributary_m);
 }
 
 double at(const std::vector<double>& x_m, const std::vector<double>& values, double x) {

@@ -51,6 +51,16 @@ Json energy_json(const record::Energies& e) {
   return json;
 }
 
+/// What friction takes: the breakdown at tips, and heat at the residual traction.
+Json friction_work_json(const Result& result, const InitialState& initial) {
+  const auto& work = result.event.breakdown.work_J_per_m2;
+  double breakdown = 0;
+  for (std::size_t k = 0; k < work.size(); ++k)
+    if (!std::isnan(work[k])) breakdown += work[k] * initial.tributary_m[k];
+  const double all = -result.event.energies.back().friction_work;
+  return {{"breakdown_J_per_m", breakdown}, {"residual_J_per_m", all - breakdown}};
+}
+
 Json loads_json(const FoundLoads& loads) {
   return {{"normal_force_N_per_m", loads.normal_force_N_per_m},
           {"mean_pressure_Pa", loads.mean_pressure_Pa},
@@ -237,6 +247,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                 status.name == "running" ? Json() : Json(snapshots_after(result.config, event.time_s))},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
+  json["friction_work"] = friction_work_json(result, initial);
   if (initial.prescribed) json["prestress"] = prestress_json(result.config.prestress);
   if (result.shared) json["processes"] = processes_json(*result.shared);
   if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;

@@ -36,7 +36,15 @@ from common import (
 )
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
 
-SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
+SO_FAR = {
+    "case.resolved.toml",
+    "run.json",
+    "interface.h5",
+    "fronts.csv",
+    "fracture.csv",
+    "static.csv",
+    "energy.csv",
+}
 FILES = SO_FAR | {"checksums.sha256"}
 
 
