@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from slipfront.claims import collapse as collapse
     from slipfront.claims import outcome as outcome
     from slipfront.claims import scorecard as scorecard
+    from slipfront.contour import ContourIntegral as ContourIntegral
+    from slipfront.contour import contour_integral as contour_integral
     from slipfront.errors import BlowUpError as BlowUpError
     from slipfront.errors import CaseError as CaseError
     from slipfront.errors import Error as Error
@@ -73,6 +75,8 @@ _PLACES = {
     "collapse": "claims",
     "outcome": "claims",
     "scorecard": "claims",
+    "ContourIntegral": "contour",
+    "contour_integral": "contour",
     "BlowUpError": "errors",
     "CaseError": "errors",
     "Error": "errors",
