@@ -25,9 +25,10 @@ namespace {
 /// Most elements along the interface: with a dense stiffness of the sample, and with kernels.
 constexpr double most_of_sample = 500, most_of_half_spaces = 1000;
 
-/// Whether the sample's edges enter: where its far edge is held.
+/// Whether the sample's edges enter: where its far edges are held.
 bool is_held(const input::Case& config) {
-  return config.plate.top == mesh::Top::loaded;
+  return config.plate.top == mesh::Top::loaded &&
+         (!input::has_base_body(config) || config.base.plate.top == mesh::Top::loaded);
 }
 
 /// The case in larger elements where it has more than `most` along the interface; others are left.
@@ -84,9 +85,8 @@ void add_friction(const input::Case& config, const TipFriction& given, const sta
     if (given.fracture_energy_J_per_m2.empty()) {
       const auto slip_m = interface::weakening_slip_m(law);
       if (!slip_m)
-        throw UserError(
-            "friction.law = \"{}\" has no fracture energy of its own; give it by --fracture-energy",
-            law.name());
+        throw UserError("{} = \"{}\" has no fracture energy of its own; give it by {}", Key("friction.law"),
+                        law.name(), for_caller("--fracture-energy", "fracture_energy_J_per_m2"));
       p.fracture_energy_J_per_m2.push_back(0.5 * (mu_s - mu_k) * p_Pa * *slip_m);
     } else {
       p.fracture_energy_J_per_m2.push_back(at(given.x_m, given.fracture_energy_J_per_m2, p.x_m[k]));
@@ -160,8 +160,14 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
   const auto patch = first_crack(config, initial, p, x_m);
   p.of_fronts = fracture::predict(response, loads, p.fracture_energy_J_per_m2, patch.first, patch.last,
                                   fracture::SpeedLaw(bodies));
-  if (!is_held(config) && (config.plate.sides == mesh::Sides::free || config.plate.top == mesh::Top::free))
-    p.notes.emplace_back("free edges are left out: the crack is one between half-spaces");
+  const auto absorbs = [](const mesh::Plate& plate) {
+    return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
+  };
+  if (!is_held(config) &&
+      !(absorbs(config.plate) && (!input::has_base_body(config) || absorbs(config.base.plate))))
+    p.notes.emplace_back(
+        "edges are left out, the crack is one between half-spaces: of samples with both far edges held alone "
+        "they are taken in");
   if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
     p.notes.emplace_back("absorbing sides count as free ones");
   if (config.regularisation.relaxed != interface::Relaxed::initial_pressure && !stability::are_alike(bodies))

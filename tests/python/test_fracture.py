@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import csv
-import json
+import re
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ import slipfront
 from common import refusal, require_done
 from package_cases import program
 
-# Alike bodies; Gamma = (mu_s - mu_k) p d_c/2 = 2 J/m2, 11 elements in the process zone.
+# Alike bodies; Gamma = (mu_s - mu_k) p d_c/2 = 1 J/m2, 10 elements in the process zone.
 BODY = """
 youngs_modulus_Pa = 5.6e9
 poissons_ratio = 0.33
@@ -23,7 +23,7 @@ CASE = f"""
 [plate]
 width_m = 0.3
 height_m = 0.1
-element_size_m = 1e-3
+element_size_m = 0.5e-3
 corner = "none"
 sides = "absorbing"
 top = "absorbing"
@@ -35,29 +35,29 @@ sides = "absorbing"
 bottom = "absorbing"{BODY}[loading]
 method = "prestress"
 [prestress]
-t_Pa = 2.5e6
+t_Pa = 2.35e6
 p_Pa = 5e6
 [friction]
 law = "slip_weakening"
 mu_s = 0.6
 mu_k = 0.4
-d_c_m = 4e-6
+d_c_m = 2e-6
 [event]
 kind = "nucleation"
 [nucleation]
 form = "weakened"
 x_m = 0.15
-half_length_m = 15e-3
+half_length_m = 16e-3
 taper_m = 4e-3
 [time]
-end_s = 140e-6
+end_s = 150e-6
 quiet_s = inf
 [fronts]
 l_star_m = 3e-3
 [output]
 history_interval_s = 0.5e-6
 """
-GAMMA = 2.0
+GAMMA = 1.0
 C_R = 1227.6
 
 
@@ -80,8 +80,8 @@ def test_breakdown_work_is_the_fracture_energy(run):
     np.testing.assert_allclose(points.breakdown_work_J_per_m2, GAMMA, rtol=1e-3)
     np.testing.assert_allclose(points.peak_t_Pa, 3e6, rtol=1e-6)
     np.testing.assert_allclose(points.residual_t_Pa, 2e6, rtol=1e-6)
-    np.testing.assert_allclose(points.stress_drop_Pa, 0.5e6, rtol=1e-6)
-    np.testing.assert_allclose(points.weakening_distance_m, 4e-6, rtol=1e-3)
+    np.testing.assert_allclose(points.stress_drop_Pa, 0.35e6, rtol=1e-6)
+    np.testing.assert_allclose(points.weakening_distance_m, 2e-6, rtol=1e-3)
     known = points.cohesive_zone_m.notnull().to_numpy()
     np.testing.assert_allclose(
         points.cohesive_zone_m[known], (points.v_tip_m_per_s * points.weakening_time_s)[known]
@@ -94,8 +94,8 @@ def test_slip_behind_the_tip_gives_the_same_energy(run):
     slow = points.isel(point=(points.v_tip_m_per_s < 0.9 * C_R).to_numpy())
     G = slow.G_slip_J_per_m2.dropna("point")
     assert G.sizes["point"] > 10
-    # The cohesive zone is a tenth of the half-length.
-    assert abs(float(G.median()) / GAMMA - 1) < 0.1
+    # The cohesive zone is 5 % of the half-length.
+    assert abs(float(G.median()) / GAMMA - 1) < 0.05
 
 
 def test_friction_work_is_breakdown_and_heat(run):
@@ -119,16 +119,15 @@ def test_speeds_are_predicted(run):
 
 def test_a_run_predicts_by_its_own_friction(run):
     by_law, by_run = slipfront.predict_fronts(CASE), slipfront.predict_fronts(run)
-    np.testing.assert_allclose(by_run.fracture_energy_J_per_m2, GAMMA, rtol=1e-3)
-    n = min(by_law.sizes["point"], by_run.sizes["point"])
-    assert n > 200
-    np.testing.assert_allclose(by_run.x_m[:n], by_law.x_m[:n])
+    np.testing.assert_array_equal(by_run.x_m, by_law.x_m)
+    beyond = abs(by_run.x_m - 0.15) > 20e-3  # the taper has less
+    np.testing.assert_allclose(by_run.fracture_energy_J_per_m2[beyond], GAMMA, rtol=1e-3)
 
 
 def test_the_program_predicts_the_same(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     said = require_done(program("fracture", "case.toml", "-o", "fronts.csv", cwd=tmp_path)).stdout
-    assert "first crack 0.034 m: it runs" in said
+    assert "first crack 0.0365 m: it runs" in said
     assert said.count("through to the end of the contact") == 2
     with open(tmp_path / "fronts.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -143,44 +142,48 @@ def test_arrest_where_the_bodies_get_tougher():
     predicted = slipfront.predict_fronts(CASE, fracture_energy_J_per_m2=(x_m, energy))
     assert predicted.attrs["arrests"] == [-1, 1]
     last = predicted.isel(point=np.isnan(predicted.time_s).to_numpy())
-    np.testing.assert_allclose(last.x_m, [0.079, 0.221], atol=1.1e-3)
+    np.testing.assert_allclose(last.x_m, [0.079, 0.221], atol=0.6e-3)
 
 
 def test_a_short_crack_waits():
     predicted = slipfront.predict_fronts(CASE, at_x_m=0.15)
     assert not predicted.attrs["starts"]
     # Griffith: 2 E Gamma/(pi drop^2), to one element.
-    assert predicted.attrs["critical_length_m"] == pytest.approx(2 * 5.6e9 * GAMMA / (np.pi * 0.25e12), abs=1e-3)
+    assert predicted.attrs["critical_length_m"] == pytest.approx(
+        2 * 5.6e9 * GAMMA / (np.pi * 0.35e6**2), abs=0.5e-3
+    )
 
 
 def test_info_tells_cracks_in_short(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
-    assert "fronts as cracks                the first crack, 0.034 m, runs\n" in require_done(
-        program("info", "case.toml", cwd=tmp_path)
-    ).stdout
+    assert (
+        "fronts as cracks                the first crack, 0.0365 m, runs\n"
+        in require_done(program("info", "case.toml", cwd=tmp_path)).stdout
+    )
 
 
 def test_the_sample_with_a_held_edge():
-    plate = {"plate.top": "loaded", "plate.sides": "free", "base.sides": "free", "base.bottom": "held"}
-    held = slipfront.predict_fronts(CASE, {"plate.top": "loaded", "plate.sides": "free"})
-    assert plate and held.attrs["bodies"] == "the sample, its far edges held"
+    edges = {"plate.top": "loaded", "plate.sides": "free", "base.bottom": "held", "base.sides": "free"}
+    held = slipfront.predict_fronts(CASE, edges)
+    assert held.attrs["bodies"] == "the sample, its far edges held"
     open_ = slipfront.predict_fronts(CASE)
-    # Held edges take what the crack would release beyond them.
-    last = held.isel(point=(held.direction == 1).to_numpy()).G_static_J_per_m2[60]
-    assert float(last) < float(open_.isel(point=(open_.direction == 1).to_numpy()).G_static_J_per_m2[60])
+    # Held edges take what the crack would release beyond them: it is twice as long as a body is high.
+    at = [data.isel(point=(data.direction == 1).to_numpy()) for data in (held, slipfront.predict_fronts(CASE))]
+    G_held, G_open = (np.interp(0.25, data.x_m, data.G_static_J_per_m2) for data in at)
+    assert G_held < G_open
 
 
-@pytest.mark.parametrize(
-    "given, said",
-    [
-        ({"friction.law": "velocity_weakening"}, "has no fracture energy of its own"),
-    ],
-)
-def test_refused(given, said):
-    case = CASE.replace('law = "slip_weakening"', 'law = "velocity_weakening"').replace("d_c_m = 4e-6", "")
-    with pytest.raises(slipfront.CaseError, match=said):
+def test_a_law_without_a_length_has_no_fracture_energy(tmp_path):
+    case = CASE.replace('"slip_weakening"', '"velocity_weakening"').replace("d_c_m = 2e-6", "")
+    with pytest.raises(
+        slipfront.CaseError, match="no fracture energy of its own; give it by fracture_energy_J"
+    ):
         slipfront.predict_fronts(case)
-    assert given
+    assert slipfront.predict_fronts(case, fracture_energy_J_per_m2=GAMMA).attrs["starts"]
+    (tmp_path / "case.toml").write_text(case)
+    said = refusal(program("fracture", "case.toml", cwd=tmp_path))
+    assert re.match(r"case.toml:\d+: friction.law = .* give it by --fracture-energy$", said)
+    assert refusal(program("fracture", "case.toml", "--fracture-energy", "-1", cwd=tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -197,14 +200,3 @@ def test_refused(given, said):
 def test_options_refused(options, said):
     with pytest.raises(slipfront.CaseError, match=said):
         slipfront.predict_fronts(CASE, **options)
-
-
-def test_the_program_refuses(tmp_path):
-    (tmp_path / "case.toml").write_text(CASE.replace('law = "slip_weakening"', 'law = "coulomb"\n#').replace(
-        "mu_s = 0.6", "").replace("mu_k = 0.4", "").replace("d_c_m = 4e-6", ""))
-    assert "give it by --fracture-energy" in refusal(program("fracture", "case.toml", cwd=tmp_path))
-    assert refusal(program("fracture", "case.toml", "--fracture-energy", "-1", cwd=tmp_path))
-
-
-def test_a_folder_without_the_table_is_an_old_one(run, tmp_path):
-    assert json.loads((run.folder / "run.json").read_text())["friction_work"]
