@@ -95,6 +95,11 @@ class Gauge:
             time_s, values = time_s[inside], {name: v[inside] for name, v in values.items()}
         return replace(self, time_s=time_s, values=values, smoothing_s=smoothing_s)
 
+    def peak(self, part: str) -> float:
+        """The largest departure of a component from its median."""
+        values = np.asarray(self.values[part], float)
+        return float(np.abs(values - np.median(values)).max())
+
 
 def between(time_s: np.ndarray, ends_s: tuple[float, float], name: str) -> np.ndarray:
     inside = (time_s >= ends_s[0]) & (time_s <= ends_s[1])

@@ -22,6 +22,7 @@ LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
 LARGE_ERROR = 0.5  # of Gamma
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
+LEAST_TIMES = 8
 LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
 REACH = 5.0  # of a fit from the tip, in heights of the gauge
 
@@ -61,10 +62,11 @@ class Trial(NamedTuple):
 
 
 def ranked(trials: list[Trial]) -> list[int]:
-    """Those where the record changes much, from the one that leaves least; first those that slip to +x."""
+    """Those where the record changes much, from the one that leaves least. Without xy both directions leave
+    the same: then slip to +x comes first."""
     most = max((t.square for t in trials), default=0.0)
     changing = [k for k, t in enumerate(trials) if t.square > LEAST_SQUARE * most]
-    return sorted(changing, key=lambda k: (not trials[k].slips_to_x, trials[k].left))
+    return sorted(changing, key=lambda k: (round(trials[k].left, 9), not trials[k].slips_to_x))
 
 
 class Tip:
@@ -120,7 +122,7 @@ class Tip:
 
     def trial(self, speed: float, tip_s: float) -> Trial:
         at = self.inside(speed, tip_s)
-        if len(at) < 4:
+        if len(at) < LEAST_TIMES:
             return Trial(0.0, 1.0, False)
         columns, data = self.columns(speed, tip_s, at), self.data[:, at].ravel()
         n = len(self.parts)
@@ -131,12 +133,12 @@ class Tip:
         return Trial(square, left, bool(along[-1] * r[-1, -1] > 0))
 
 
-def bodies_of(given: OpenRun | CaseLike) -> _core.Case:
+def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
     """The bodies of a run, a case, or a dictionary of its tables material and base, such as
     {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane."""
     if isinstance(given, OpenRun):
         given = {name: table for name, table in given.case.items() if name in ("material", "base")}
-    case = make_case(given, None, {})
+    case = given if isinstance(given, _core.Case) else make_case(given, None, {})
     one = np.ones(1)
     if np.isnan(_core.TipField(case, 0.0, 1).stress_per_K(one, one)[0][0]):
         raise CaseError("the bodies differ: the field is that of equal bodies or of one on a rigid plane")
@@ -198,7 +200,7 @@ def fit_tip(
     tip, by default 5 times the gauge's height.
     Errors follow from the Jacobian and the scatter, with the correlation of neighbouring residuals."""
     instance(gauge, Gauge, "gauge")
-    case = bodies if isinstance(bodies, _core.Case) else bodies_of(bodies)
+    case = bodies_of(bodies)
     limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
     height = abs(gauge.y_m)
     r_m = (
@@ -253,7 +255,7 @@ def refined(
         low, high = np.array([at_s - reach_s, 0.02 * limit]), np.array([at_s + reach_s, 0.999 * limit])
         found = least_squares(residual, np.array([at_s, speed])[:n], steps, low[:n], high[:n])
         moved = tip.inside(speed if given else found[1], found[0])
-        if len(moved) < 4:
+        if len(moved) < LEAST_TIMES:
             break
         at_s, speed = float(found[0]), speed if given else float(found[1])
         if np.array_equal(moved, at):
@@ -329,7 +331,7 @@ def fit_tips(
     passages: int = 1,
     **options: Any,
 ) -> list[TipFit]:
-    """fit_tip of each gauge and each of so many passages of fronts, the clearest first.
+    """fit_tip of each gauge and each of so many passages of fronts, in the order of time.
 
     speed_m_per_s: a number; None: of each fit; "gauges": that between the tips at the neighbouring gauges of
     one passage and direction, fitted first. options: of fit_tip."""
@@ -345,7 +347,7 @@ def fit_tips(
         for _ in range(n):
             taken = [(f.time_s[0], f.time_s[-1]) for f in own]
             own.append(fit_tip(gauge, case, speed_m_per_s=speed, taken_s=taken, **options))
-        found.append(own)
+        found.append(sorted(own, key=lambda fit: fit.tip_s))
     if between_gauges:
         speeds = speeds_between([f for own in found for f in own], n)
         found = [
