@@ -20,7 +20,7 @@ from slipfront.files import DataError, one_line, read_table
 from slipfront.given import instance, number
 from slipfront.onsets import LENGTHS, PRESSURES, QUANTITIES, TIMES, columns_of, in_si, name_and_unit
 from slipfront.opened import OpenRun
-from slipfront.read import require, require_ascending
+from slipfront.read import require
 
 COMPONENTS = ("xx", "yy", "xy")
 STRAINS = {"": 1.0, "strain": 1.0, "ustrain": 1e-6, "microstrain": 1e-6, "mstrain": 1e-3}
@@ -187,20 +187,18 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     read = {q: in_si(table.numbers(name), factor) for q, (name, factor) in chosen.items()}
     for q, values in read.items():
         require(np.isfinite(values), file, f"column '{one_line(chosen[q][0])}' has an empty cell")
-    values, is_strain = components(file, read)
+    of_all, is_strain = components(file, read)
     column = next((name for name in table.header if name.strip().lower() in GAUGE_NAMES), None)
     labels = np.array(table.texts(column) if column else ["gauge"] * len(table.rows), dtype=np.str_)
     require(len(labels) > 0, file, "no rows")
     made = []
     for label in dict.fromkeys(labels.tolist()):
         rows = labels == label
-        where = f"{file}: gauge '{one_line(label)}'"
         x_m, y_m, time_s = (read[q][rows] for q in ("x_m", "y_m", "time_s"))
         if np.ptp(x_m) > 0 or np.ptp(y_m) > 0:
-            raise DataError(f"{where}: is at more than one place")
-        require_ascending(Path(where), "time", time_s)
+            raise DataError(f"{file}: gauge '{one_line(label)}' is at more than one place")
         try:
-            own = {part: v[rows] for part, v in values.items()}
+            own = {part: v[rows] for part, v in of_all.items()}
             made.append(Gauge(label, float(x_m[0]), float(y_m[0]), time_s, own, is_strain))
         except CaseError as error:
             raise DataError(f"{file}: {error}") from None

@@ -149,8 +149,8 @@ def scan(tip: Tip, speed: float, tip_s: float | None, taken: list[tuple[float, f
     """The best time of the tip at a speed."""
     fine_s = 0.25 * abs(tip.gauge.y_m) / speed
     ends = (tip.time_s[0], tip.time_s[-1]) if tip_s is None else (tip_s - 8 * fine_s, tip_s + 8 * fine_s)
-    tips = np.arange(ends[0], ends[1] + fine_s, fine_s)
-    tips = [t for t in tips if not any(low < t < high for low, high in taken)]
+    every = np.arange(ends[0], ends[1] + fine_s, fine_s)
+    tips = [t for t in every if not any(low < t < high for low, high in taken)]
     order = ranked([tip.trial(speed, t) for t in tips])
     return float(tips[order[0]]) if order else None
 
@@ -333,13 +333,12 @@ def fit_tips(
 ) -> list[TipFit]:
     """fit_tip of each gauge and each of so many passages of fronts, in the order of time.
 
-    speed_m_per_s: a number; None: of each fit; "gauges": that between the tips at the neighbouring gauges of
-    one passage and direction, fitted first. options: of fit_tip."""
+    speed_m_per_s: a number; None: of each fit; "gauges": by the times of the tip at the gauges beside it, in
+    the same passage and direction, fitted first. options: of fit_tip."""
     case, n = bodies_of(bodies), whole(passages, "passages", least=1)
-    between_gauges = speed_m_per_s == "gauges"
-    if isinstance(speed_m_per_s, str) and not between_gauges:
+    if isinstance(speed_m_per_s, str) and speed_m_per_s != "gauges":
         raise CaseError(f"speed_m_per_s is {shown(speed_m_per_s)}; it must be a number, None or 'gauges'")
-    speed = None if between_gauges else speed_m_per_s
+    speed = None if isinstance(speed_m_per_s, str) else speed_m_per_s
     given = list(gauges)
     found: list[list[TipFit]] = []
     for gauge in given:
@@ -348,7 +347,7 @@ def fit_tips(
             taken = [(f.time_s[0], f.time_s[-1]) for f in own]
             own.append(fit_tip(gauge, case, speed_m_per_s=speed, taken_s=taken, **options))
         found.append(sorted(own, key=lambda fit: fit.tip_s))
-    if between_gauges:
+    if speed_m_per_s == "gauges":
         speeds = speeds_between([f for own in found for f in own], n)
         found = [
             [
@@ -363,17 +362,21 @@ def fit_tips(
 
 
 def speeds_between(fits: list[TipFit], passages: int) -> list[float]:
-    """Of each fit: the distance of its neighbours along x over the time between their tips."""
+    """Of each fit: the slope of the tips' times over x, by the parabola through three gauges side by side, or
+    the line through two."""
     made = []
     for k, fit in enumerate(fits):
         same = [f for f in fits[k % passages :: passages] if f.direction == fit.direction]
         x, order = np.unique([f.x_m for f in same], return_index=True)
-        tips = np.array([f.tip_s for f in same])[order]
-        i = int(np.searchsorted(x, fit.x_m))
-        low, high = max(i - 1, 0), min(i + 1, len(x) - 1)
-        if low == high or not (tips[high] - tips[low]) * fit.direction > 0:
+        if len(x) < 2:
             raise CaseError(
-                f"gauge {fit.gauge}: no neighbour at another x whose tip gives a speed; give a number"
+                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give a number"
             )
-        made.append(float((x[high] - x[low]) / (tips[high] - tips[low])) * fit.direction)
+        tips = np.array([f.tip_s for f in same])[order]
+        slowness = np.gradient(tips, x, edge_order=min(2, len(x) - 1))[np.searchsorted(x, fit.x_m)]
+        if not slowness * fit.direction > 0:
+            raise CaseError(
+                f"gauge {fit.gauge}: its neighbours' tips do not follow one another; give a speed"
+            )
+        made.append(float(fit.direction / slowness))
     return made
