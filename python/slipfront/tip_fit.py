@@ -5,8 +5,8 @@ K is positive where the body above slips to +x."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +23,7 @@ LARGE_ERROR = 0.5  # of Gamma
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
 LEAST_TIMES = 8
+ROUNDS = 3  # of fits of several tips, each without the others
 LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
 REACH = 5.0  # of a fit from the tip, in heights of the gauge
 
@@ -135,9 +136,11 @@ class Tip:
 
 def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
     """The bodies of a run, a case, or a dictionary of its tables material and base, such as
-    {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane."""
+    {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane. No size counts."""
     if isinstance(given, OpenRun):
         given = {name: table for name, table in given.case.items() if name in ("material", "base")}
+    if isinstance(given, Mapping) and isinstance(base := given.get("base"), Mapping):
+        given = {**given, "base": {"height_m": 0.1, **base}} if base.get("kind") == "body" else given
     case = given if isinstance(given, _core.Case) else make_case(given, None, {})
     one = np.ones(1)
     if np.isnan(_core.TipField(case, 0.0, 1).stress_per_K(one, one)[0][0]):
@@ -145,12 +148,11 @@ def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
     return case
 
 
-def scan(tip: Tip, speed: float, tip_s: float | None, taken: list[tuple[float, float]]) -> float | None:
+def scan(tip: Tip, speed: float, tip_s: float | None) -> float | None:
     """The best time of the tip at a speed."""
     fine_s = 0.25 * abs(tip.gauge.y_m) / speed
     ends = (tip.time_s[0], tip.time_s[-1]) if tip_s is None else (tip_s - 8 * fine_s, tip_s + 8 * fine_s)
-    every = np.arange(ends[0], ends[1] + fine_s, fine_s)
-    tips = [t for t in every if not any(low < t < high for low, high in taken)]
+    tips = np.arange(ends[0], ends[1] + fine_s, fine_s)
     order = ranked([tip.trial(speed, t) for t in tips])
     return float(tips[order[0]]) if order else None
 
@@ -188,14 +190,13 @@ def fit_tip(
     r_min_m: float = 0.0,
     r_max_m: float | None = None,
     step: bool = True,
-    taken_s: Iterable[tuple[float, float]] = (),
 ) -> TipFit:
     """The steadily moving mode II field fitted to a gauge's record: K and with it the fracture energy Gamma,
     the speed unless it is given, the time of the tip, and of each component an offset and a step of the
     residual stress or strain.
 
     bodies: see bodies_of. direction: +1 or -1 along x, None: the one that explains more. tip_s: about when
-    the tip passes, None: where the field explains most of the record; taken_s are intervals left out there.
+    the tip passes, None: where the field explains most of the record.
     The fit takes the times at which the gauge is from r_min_m, beyond the cohesive zone, to r_max_m from the
     tip, by default 5 times the gauge's height.
     Errors follow from the Jacobian and the scatter, with the correlation of neighbouring residuals."""
@@ -221,7 +222,7 @@ def fit_tip(
     starts = []
     for way in (1, -1) if direction is None else (direction,):
         tip = Tip(gauge, case, way, step, r_m)
-        times_s = [(v, scan(tip, v, tip_s, list(taken_s))) for v in speeds]
+        times_s = [(v, scan(tip, v, tip_s)) for v in speeds]
         starts += [(tip.trial(v, t), tip, v, t) for v, t in times_s if t is not None]
     given = speed_m_per_s is not None
     ended = []
@@ -340,43 +341,76 @@ def fit_tips(
         raise CaseError(f"speed_m_per_s is {shown(speed_m_per_s)}; it must be a number, None or 'gauges'")
     speed = None if isinstance(speed_m_per_s, str) else speed_m_per_s
     given = list(gauges)
-    found: list[list[TipFit]] = []
-    for gauge in given:
-        own: list[TipFit] = []
-        for _ in range(n):
-            taken = [(f.time_s[0], f.time_s[-1]) for f in own]
-            own.append(fit_tip(gauge, case, speed_m_per_s=speed, taken_s=taken, **options))
-        found.append(sorted(own, key=lambda fit: fit.tip_s))
+    options["speed_m_per_s"] = speed
+    found = [passing(gauge, case, n, options) for gauge in given]
     if speed_m_per_s == "gauges":
-        speeds = speeds_between([f for own in found for f in own], n)
-        found = [
-            [
-                fit_tip(
-                    g, case, **{**options, "speed_m_per_s": v, "direction": f.direction, "tip_s": f.tip_s}
-                )
-                for f, v in zip(own, speeds[k * n :], strict=False)
-            ]
-            for k, (g, own) in enumerate(zip(given, found, strict=True))
-        ]
+        speeds = [speeds_between(found, own) for own in found]
+        for k, gauge in enumerate(given):
+            found[k] = refitted(gauge, case, found[k], options, speeds[k])
     return [fit for own in found for fit in own]
 
 
-def speeds_between(fits: list[TipFit], passages: int) -> list[float]:
-    """Of each fit: the slope of the tips' times over x, by the parabola through three gauges side by side, or
-    the line through two."""
+def passing(gauge: Gauge, case: _core.Case, n: int, options: dict[str, Any]) -> list[TipFit]:
+    """The tips that pass a gauge: each is sought in what those before it leave of the record."""
+    found: list[TipFit] = []
+    rest = gauge
+    for _ in range(n):
+        found.append(fit_tip(rest, case, **options))
+        rest = without(rest, case, found[-1])
+    found.sort(key=lambda fit: fit.tip_s)
+    for _ in range(ROUNDS if n > 1 else 0):
+        found = refitted(gauge, case, found, options, [options["speed_m_per_s"]] * n)
+    return found
+
+
+def refitted(
+    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any], speeds: list[Any]
+) -> list[TipFit]:
+    """Each tip again, about where it was, in the record without the others."""
+    found = list(fits)
+    for k, speed in enumerate(speeds):
+        rest = gauge
+        for other in found[:k] + found[k + 1 :]:
+            rest = without(rest, case, other)
+        known = {"speed_m_per_s": speed, "direction": fits[k].direction, "tip_s": fits[k].tip_s}
+        fit = fit_tip(rest, case, **{**options, **known})
+        at = np.searchsorted(gauge.time_s, fit.time_s)
+        others = {part: (np.asarray(gauge.values[part]) - rest.values[part])[at] for part in fit.fitted}
+        found[k] = replace(fit, fitted={part: fit.fitted[part] + others[part] for part in others})
+    return found
+
+
+def without(gauge: Gauge, case: _core.Case, fit: TipFit) -> Gauge:
+    """The record less the field and the step of a tip."""
+    per_K, stepped = Tip(gauge, case, fit.direction, True, (0, 1)).shapes(
+        fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s))
+    )
+    less = {
+        part: fit.K_Pa_sqrt_m * of + fit.step[part] * stepped
+        for part, of in zip(fit.step, per_K, strict=True)
+    }
+    return replace(gauge, values={part: np.asarray(v) - less[part] for part, v in gauge.values.items()})
+
+
+def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
+    """Of each fit of a gauge: the slope of the tips' times over x, by the parabola through three gauges side
+    by side, or the line through two. Fronts are the same by their direction and their order."""
     made = []
-    for k, fit in enumerate(fits):
-        same = [f for f in fits[k % passages :: passages] if f.direction == fit.direction]
-        x, order = np.unique([f.x_m for f in same], return_index=True)
+    for k, fit in enumerate(own):
+        way = fit.direction
+        order = sum(f.direction == way for f in own[:k])
+        of_way = [[f for f in fits if f.direction == way] for fits in every]
+        same = [fits[order] for fits in of_way if len(fits) > order]
+        x, first = np.unique([f.x_m for f in same], return_index=True)
         if len(x) < 2:
             raise CaseError(
                 f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give a number"
             )
-        tips = np.array([f.tip_s for f in same])[order]
-        slowness = np.gradient(tips, x, edge_order=min(2, len(x) - 1))[np.searchsorted(x, fit.x_m)]
-        if not slowness * fit.direction > 0:
+        tips = np.array([f.tip_s for f in same])[first]
+        slowness = np.gradient(tips, x, edge_order=2 if len(x) > 2 else 1)[np.searchsorted(x, fit.x_m)]
+        if not slowness * way > 0:
             raise CaseError(
                 f"gauge {fit.gauge}: its neighbours' tips do not follow one another; give a speed"
             )
-        made.append(float(fit.direction / slowness))
+        made.append(float(way / slowness))
     return made
