@@ -24,6 +24,7 @@ from slipfront.read import require
 
 COMPONENTS = ("xx", "yy", "xy")
 STRAINS = {"": 1.0, "strain": 1.0, "ustrain": 1e-6, "microstrain": 1e-6, "mstrain": 1e-3}
+LEAST_SHARED = 0.5  # of the shorter of record and run
 GAUGE_NAMES = ("gauge", "name", "probe", "station")
 WANTED = (
     "gauge, x, y and time with their units and strain_xx, strain_yy, strain_xy, three strain_ANGLE of a "
@@ -79,16 +80,13 @@ class Gauge:
             values = {name: v - v[inside].mean() for name, v in values.items()}
         if low_pass_Hz is not None:
             cut_off = number(low_pass_Hz, "low_pass_Hz", above=0, finite=True)
-            even_s = np.linspace(time_s[0], time_s[-1], len(time_s))
-            values = {name: np.interp(even_s, time_s, v) for name, v in values.items()}
-            time_s, step_s = even_s, even_s[1] - even_s[0]
-            if cut_off > 0.5 / step_s:
+            highest = 0.5 * (len(time_s) - 1) / (time_s[-1] - time_s[0])
+            if cut_off > highest:
                 raise CaseError(
-                    f"low_pass_Hz is {cut_off:g}; the record of {self.name} ends at {0.5 / step_s:.4g} Hz"
+                    f"low_pass_Hz is {cut_off:g}; the record of {self.name} ends at {highest:.4g} Hz"
                 )
             own_s = np.sqrt(np.log(2)) / (2 * np.pi * cut_off)
-            kernel = gaussian(own_s / step_s)
-            values = {name: smooth(np.pad(v, len(kernel) // 2, "edge"), kernel) for name, v in values.items()}
+            time_s, values = filtered(time_s, values, own_s)
             smoothing_s = float(np.hypot(smoothing_s, own_s))
         if window_s is not None:
             inside = between(time_s, window_s, f"gauge {self.name}: window_s")
@@ -120,6 +118,17 @@ def gaussian(width: float) -> np.ndarray:
 
 def smooth(values: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     return np.convolve(values, kernel, "valid")
+
+
+def filtered(
+    time_s: np.ndarray, values: Mapping[str, np.ndarray], width_s: float
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Even times, and the values there behind a Gaussian filter of this standard deviation."""
+    even_s = np.linspace(time_s[0], time_s[-1], len(time_s))
+    kernel = gaussian(width_s / (even_s[1] - even_s[0]))
+    even = {name: np.interp(even_s, time_s, v) for name, v in values.items()}
+    n = len(kernel) // 2
+    return even_s, {name: smooth(np.pad(v, n, "edge"), kernel) for name, v in even.items()}
 
 
 def from_arms(arms: Mapping[float, np.ndarray]) -> dict[str, np.ndarray]:
@@ -223,7 +232,7 @@ def gauges_of(run: OpenRun, *, stress: bool = False) -> list[Gauge]:
 
 def at_place(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
     """Times, and a run's probes at a gauge's place [its components, times]: a probe there, or linear between
-    two of its height that are no farther apart than this."""
+    two of its height that are no farther apart than this; through the filter of the record."""
     computed = [g for g in gauges_of(run, stress=not gauge.is_strain) if abs(g.y_m - gauge.y_m) < 1e-6]
     parts = [part for part in COMPONENTS if part in gauge.values]
     left = max((g for g in computed if g.x_m <= gauge.x_m + 1e-6), key=lambda g: g.x_m, default=None)
@@ -238,8 +247,11 @@ def at_place(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
         if right.x_m - left.x_m < 1e-9
         else float(np.clip((gauge.x_m - left.x_m) / (right.x_m - left.x_m), 0, 1))
     )
-    values = [(1 - share) * left.values[part] + share * right.values[part] for part in parts]
-    return left.time_s, np.array(values)
+    values = {part: (1 - share) * left.values[part] + share * right.values[part] for part in parts}
+    time_s = left.time_s
+    if gauge.smoothing_s > 0:
+        time_s, values = filtered(time_s, values, gauge.smoothing_s)
+    return time_s, np.array([values[part] for part in parts])
 
 
 class Beside:
@@ -257,7 +269,8 @@ class Beside:
         each about its own mean: gauges have no known zero. [components, times]"""
         own_s = self.time_s + shift_s
         both = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
-        if np.count_nonzero(both) < 4:
+        shared_s = np.ptp(own_s[both]) if both.any() else 0.0
+        if shared_s < LEAST_SHARED * min(np.ptp(own_s), np.ptp(self.run_s)):
             return np.empty((len(self.parts), 0)), np.empty((len(self.parts), 0))
         record = self.measured[:, both]
         computed = np.array([np.interp(own_s[both], self.run_s, row) for row in self.computed])
@@ -265,7 +278,7 @@ class Beside:
         return less[0], less[1]
 
     def misfit(self, shift_s: float) -> np.ndarray:
-        """Of each component: rms of the difference over that of the record; infinite where they share no
+        """Of each component: rms of the difference over that of the record; infinite where they share few
         times."""
         difference, record = self.differences(shift_s)
         if difference.shape[1] == 0:
@@ -296,8 +309,8 @@ def best_shift(besides: list[Beside], within_s: float) -> float:
 def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 50e-6) -> xr.Dataset:
     """A run's probes beside records at the same places: what is left between them, and the shift of clocks.
 
-    within_s: the largest shift that is tried; 0: none. Filter the records as they should be compared; a
-    record that has passed a filter is compared with probes that have not.
+    within_s: the largest shift that is tried; 0: none. The probes pass the filter that `prepared` has put on
+    a record.
 
     Returns a Dataset over gauge and component: misfit at the shift common to all, rms of the difference over
     that of the record, both about their means, 0 where they agree; own_misfit at each gauge's own shift;
@@ -310,7 +323,7 @@ def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 5
     shift = best_shift(besides, within)
     if not np.isfinite([b.misfit(shift) for b in besides][0]).all():
         raise CaseError(
-            f"records and run share no times within {within:g} s of shift; shift the records' clock"
+            f"records and run share less than half their times within {within:g} s of shift; shift the clock"
         )
     own = [best_shift([b], within) for b in besides]
     misfits = {name: np.full((len(besides), 3), np.nan) for name in ("misfit", "own_misfit")}

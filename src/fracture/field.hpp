@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fracture/tip.hpp"
+#include "solid/material.hpp"
 
 // Stress and strain near a front: those of the tip of a mode II crack that moves steadily between equal
 // half-spaces or on the rigid plane (Freund 1990, section 4.3). They add to the state with the residual
