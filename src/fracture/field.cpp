@@ -10,12 +10,6 @@
 
 namespace slipfront::fracture {
 
-PlaneTensor strain_of(const solid::Material& material, const PlaneTensor& s) {
-  const double P = solid::longitudinal_modulus_Pa(material), G = solid::shear_modulus_Pa(material);
-  const double E = 4 * G * (P - G);  // times P: the uniaxial modulus of the plane
-  return {(P * s.xx - (P - 2 * G) * s.yy) / E, (P * s.yy - (P - 2 * G) * s.xx) / E, s.xy / (2 * G)};
-}
-
 // u_x = phi_x + psi_y, u_y = phi_y - psi_x, phi = Re F(x + i a_d y), psi = Im G(x + i a_s y). In units of the
 // shear modulus, with f = F'' and g = G'':
 //   stress_xx = (1 - a_s^2 + 2 a_d^2) Re f + 2 a_s Re g
@@ -44,19 +38,21 @@ TipField::TipField(const Bodies& bodies, double speed_m_per_s, int along_x)
 }
 
 PlaneTensor TipField::stress_per_K(double x_m, double y_m) const {
-  if (!has_body_below_ && y_m < 0) return {nan, nan, nan};
+  if (!has_body_below_ && y_m < 0) return {nan, nan, nan, nan};
   const auto singular = [&](double a) {
     return Complex(0, -1) / std::sqrt(2 * std::numbers::pi * Complex(along_x_ * x_m, a * y_m));
   };
   const Complex f = f_ * singular(a_d_), g = g_ * singular(a_s_);
   const double s2 = a_s_ * a_s_;
-  return {along_x_ * ((1 - s2 + 2 * a_d_ * a_d_) * f.real() + 2 * a_s_ * g.real()),
-          -along_x_ * ((1 + s2) * f.real() + 2 * a_s_ * g.real()),
-          -2 * a_d_ * f.imag() - (1 + s2) * g.imag()};
+  PlaneTensor s{along_x_ * ((1 - s2 + 2 * a_d_ * a_d_) * f.real() + 2 * a_s_ * g.real()),
+                -along_x_ * ((1 + s2) * f.real() + 2 * a_s_ * g.real()), 0,
+                -2 * a_d_ * f.imag() - (1 + s2) * g.imag()};
+  if (material_.plane == solid::Plane::strain) s.zz = material_.poissons_ratio * (s.xx + s.yy);
+  return s;
 }
 
 PlaneTensor TipField::strain_per_K(double x_m, double y_m) const {
-  return strain_of(material_, stress_per_K(x_m, y_m));
+  return solid::strain_of(stress_per_K(x_m, y_m), material_);
 }
 
 }  // namespace slipfront::fracture

@@ -2,20 +2,14 @@
 #pragma once
 
 #include "fracture/tip.hpp"
-#include "solid/material.hpp"
+#include "solid/element.hpp"
 
 // Stress and strain near a front: those of the tip of a mode II crack that moves steadily between equal
 // half-spaces or on the rigid plane (Freund 1990, section 4.3). They add to the state with the residual
 // traction on the slipping side.
 namespace slipfront::fracture {
 
-/// Components in the plane; of strain, xy is half the engineering shear strain.
-struct PlaneTensor {
-  double xx, yy, xy;
-};
-
-/// The strain that a stress in the plane makes.
-PlaneTensor strain_of(const solid::Material& material, const PlaneTensor& stress_Pa);
+using solid::PlaneTensor;
 
 /// The field of a tip at the origin.
 ///

@@ -100,6 +100,15 @@ PlaneTensor stress_Pa(const PlaneTensor& e, const Material& material) {
   return s;
 }
 
+PlaneTensor strain_of(const PlaneTensor& s, const Material& material) {
+  const double P = longitudinal_modulus_Pa(material), G = shear_modulus_Pa(material);
+  const double E = 4 * G * (P - G);  // times P: the uniaxial modulus of the plane
+  PlaneTensor e{(P * s.xx - (P - 2 * G) * s.yy) / E, (P * s.yy - (P - 2 * G) * s.xx) / E, 0, s.xy / (2 * G)};
+  if (material.plane == Plane::stress)
+    e.zz = -material.poissons_ratio / material.youngs_modulus_Pa * (s.xx + s.yy);
+  return e;
+}
+
 CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   CellCoordinates c{};
   for (int a = 0; a < 4; ++a) {

@@ -48,6 +48,8 @@ PlaneTensor strain(const CellShape& shape, const std::array<double, 8>& u_m, con
 
 /// Elastic stress of a strain, Pa, positive in tension; zz is 0 in plane stress.
 PlaneTensor stress_Pa(const PlaneTensor& strain, const Material& material);
+/// The strain whose stress it is. The stress across the plane follows from the others.
+PlaneTensor strain_of(const PlaneTensor& stress_Pa, const Material& material);
 
 /// Stiffness of the bilinear four-node element with 2 x 2 Gauss points.
 /// @pre the cell is convex and counterclockwise.

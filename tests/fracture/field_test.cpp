@@ -134,18 +134,6 @@ TEST(TipField, AtRestAsInTextbooks) {
   }
 }
 
-TEST(TipField, OfStressAndStrainByHookesLaw) {
-  for (const auto plane : {solid::Plane::stress, solid::Plane::strain}) {
-    const auto m = material(plane);
-    const PlaneTensor stress{3e6, -2e6, 1e6};
-    const auto e = strain_of(m, stress);
-    const auto C = solid::elasticity_Pa(m);
-    EXPECT_NEAR(C[0] * e.xx + C[1] * e.yy, stress.xx, 1e-6);
-    EXPECT_NEAR(C[3] * e.xx + C[4] * e.yy, stress.yy, 1e-6);
-    EXPECT_NEAR(C[8] * 2 * e.xy, stress.xy, 1e-6);
-  }
-}
-
 TEST(TipField, HasNoneBeyondTheLimitOrBetweenUnequalBodies) {
   const auto m = material();
   auto stiff = m;
