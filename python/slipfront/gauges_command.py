@@ -152,8 +152,8 @@ def line_of(fit: TipFit) -> str:
         f"{fit.gauge}: front to {'+x' if fit.direction > 0 else '-x'} passes at "
         f"{with_error(1e6 * fit.tip_s, 1e6 * fit.tip_error_s)} us, V = "
         f"{with_error(fit.speed_m_per_s, fit.speed_error_m_per_s)} m/s, Gamma = "
-        f"{with_error(fit.Gamma_J_per_m2, fit.Gamma_error_J_per_m2)} J/m2, K = {fit.K_Pa_sqrt_m:.3g} "
-        f"Pa m^(1/2), residual {100 * fit.residual_of_all:.0f} %"
+        f"{with_error(fit.Gamma_J_per_m2, fit.Gamma_error_J_per_m2)} J/m2, residual "
+        f"{100 * fit.residual_of_all:.0f} %"
     )
     return "; ".join([told, *fit.doubts])
 
