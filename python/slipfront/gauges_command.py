@@ -29,7 +29,7 @@ OF_FIT = (
 #: Names in messages and their options.
 OPTIONS = (
     "speed_m_per_s", "direction", "r_min_m", "r_max_m", "passages", "low_pass_Hz", "zero_s", "window_s",
-    "shift_s", "within_s", *MATERIAL,
+    "shift_s", "within_s",
 )  # fmt: skip
 
 

@@ -23,6 +23,7 @@ LARGE_ERROR = 0.5  # of Gamma
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
 LEAST_TIMES = 8
+ROUNDING = 1e-24  # of squares: a record that changes less is constant
 ROUNDS = 3  # of fits of several tips, each without the others
 LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
 REACH = 5.0  # of a fit from the tip, in heights of the gauge
@@ -130,6 +131,8 @@ class Tip:
         q, r = np.linalg.qr(np.roll(columns / np.linalg.norm(columns, axis=0), -1, axis=1))  # K last
         along = q.T @ data
         square = float(data @ data - along[:n] @ along[:n])
+        if square <= ROUNDING * float(data @ data):
+            return Trial(0.0, 1.0, False)
         left = float(data @ data - along @ along) / max(square, 1e-300)
         return Trial(square, left, bool(along[-1] * r[-1, -1] > 0))
 
@@ -152,7 +155,8 @@ def scan(tip: Tip, speed: float, tip_s: float | None) -> float | None:
     """The best time of the tip at a speed."""
     fine_s = 0.25 * abs(tip.gauge.y_m) / speed
     ends = (tip.time_s[0], tip.time_s[-1]) if tip_s is None else (tip_s - 8 * fine_s, tip_s + 8 * fine_s)
-    tips = np.arange(ends[0], ends[1] + fine_s, fine_s)
+    step_s = max(fine_s, (ends[1] - ends[0]) / (2 * len(tip.time_s)))  # finer than the record is no use
+    tips = np.arange(ends[0], ends[1] + step_s, step_s)
     order = ranked([tip.trial(speed, t) for t in tips])
     return float(tips[order[0]]) if order else None
 
@@ -219,12 +223,26 @@ def fit_tip(
         speeds = [number(speed_m_per_s, "speed_m_per_s", above=0)]
         if not speeds[0] < limit:
             raise CaseError(f"speed_m_per_s is {speeds[0]:g}; the field ends at {limit:.5g} m/s")
+    try:
+        with np.errstate(all="ignore"):
+            return sought(gauge, case, speeds, speed_m_per_s is not None, direction, tip_s, step, r_m)
+    except (np.linalg.LinAlgError, OverflowError):
+        raise CaseError(
+            f"gauge {gauge.name}: cannot be fitted: its numbers are too large or too small"
+        ) from None
+
+
+def sought(
+    gauge: Gauge, case: _core.Case, speeds: list[float], given: bool, direction: int | None,
+    tip_s: float | None, step: bool, r_m: tuple[float, float],
+) -> TipFit:  # fmt: skip
+    """The best fit from starts at these speeds; `given`: the one speed is kept."""
+    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
     starts = []
     for way in (1, -1) if direction is None else (direction,):
         tip = Tip(gauge, case, way, step, r_m)
         times_s = [(v, scan(tip, v, tip_s)) for v in speeds]
         starts += [(tip.trial(v, t), tip, v, t) for v, t in times_s if t is not None]
-    given = speed_m_per_s is not None
     ended = []
     for k in ranked([start[0] for start in starts])[:STARTS]:
         _, tip, v, t = starts[k]
@@ -232,7 +250,9 @@ def fit_tip(
         ended.append((tip.trial(v, t), tip, v, t, at))
     order = ranked([end[0] for end in ended])
     if not order:
-        raise CaseError(f"gauge {gauge.name}: too few times within {r_m[1]:g} m of a tip for a fit")
+        raise CaseError(
+            f"gauge {gauge.name}: nothing changes, or too few times are within {r_m[1]:g} m of a tip"
+        )
     _, tip, v, t, at = ended[order[0]]
     return result(tip, v, t, at, given, limit)
 
@@ -268,6 +288,8 @@ def refined(
 def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float) -> TipFit:
     gauge, n = tip.gauge, len(tip.parts)
     columns, data = tip.columns(speed, at_s, at), tip.data[:, at].ravel()
+    if not np.isfinite(columns).all():
+        raise np.linalg.LinAlgError  # of which LAPACK would print a line
     size = np.linalg.norm(columns, axis=0)
     linear = np.linalg.lstsq(columns / size, data, rcond=None)[0] / size
     K = float(linear[0])
