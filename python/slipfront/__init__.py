@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from slipfront.tip_fit import TipFit as TipFit
     from slipfront.tip_fit import fit_tip as fit_tip
     from slipfront.tip_fit import fit_tips as fit_tips
+    from slipfront.tip_fit import tip_field as tip_field
 
 # The module of each name.
 _PLACES = {
@@ -105,6 +106,7 @@ _PLACES = {
     "TipFit": "tip_fit",
     "fit_tip": "tip_fit",
     "fit_tips": "tip_fit",
+    "tip_field": "tip_fit",
 }
 
 __all__ = tuple(_PLACES)

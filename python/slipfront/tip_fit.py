@@ -10,11 +10,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth
-from slipfront.given import instance, number, shown, whole
+from slipfront.given import array, instance, number, shown, whole
 from slipfront.opened import OpenRun
 from slipfront.running import CaseLike, make_case
 
@@ -149,6 +150,33 @@ def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
     if np.isnan(_core.TipField(case, 0.0, 1).stress_per_K(one, one)[0][0]):
         raise CaseError("the bodies differ: the field is that of equal bodies or of one on a rigid plane")
     return case
+
+
+def tip_field(
+    bodies: OpenRun | CaseLike,
+    x_m: ArrayLike,
+    y_m: ArrayLike,
+    *,
+    speed_m_per_s: float,
+    Gamma_J_per_m2: float,
+    direction: int = 1,
+    stress: bool = False,
+) -> dict[str, np.ndarray]:
+    """Strain, or stress in Pa, that the tip of a front along direction adds to the state with the residual
+    traction: xx, yy, xy at places from the tip. The body above slips to +x. NaN below a rigid plane."""
+    case = bodies_of(bodies)
+    V = number(speed_m_per_s, "speed_m_per_s", least=0)
+    if direction not in (1, -1):
+        raise CaseError(f"direction is {shown(direction)}; it must be 1 or -1")
+    tip = _core.TipField(case, V, direction)
+    if not tip.limiting_speed_m_per_s > V:
+        raise CaseError(f"speed_m_per_s is {V:g}; the field ends at {tip.limiting_speed_m_per_s:.5g} m/s")
+    K = np.sqrt(number(Gamma_J_per_m2, "Gamma_J_per_m2", least=0) / tip.energy_per_K2)
+    x, y = np.broadcast_arrays(np.asarray(x_m, float), np.asarray(y_m, float))
+    found = (tip.stress_per_K if stress else tip.strain_per_K)(
+        array(x.ravel(), "x_m"), array(y.ravel(), "y_m")
+    )
+    return {part: K * of.reshape(x.shape) for part, of in zip(COMPONENTS, found, strict=True)}
 
 
 def scan(tip: Tip, speed: float, tip_s: float | None) -> float | None:

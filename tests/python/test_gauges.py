@@ -282,6 +282,20 @@ def test_the_command(run, fits, tmp_path, capsys):
     assert "No such file" in refused(capsys, tmp_path / "none.csv", *OPTIONS)
 
 
+def test_the_field_of_a_tip():
+    x_m = np.array([[1e-3, -1e-3], [4e-3, -4e-3]])
+    ahead, slow = (
+        slipfront.tip_field(EQUAL, x_m, 0.0, speed_m_per_s=v, Gamma_J_per_m2=GAMMA, stress=True)["xy"]
+        for v in (900.0, 0.0)
+    )
+    assert ahead[0, 0] == pytest.approx(2 * ahead[1, 0], rel=1e-12)  # as 1/sqrt(x)
+    assert np.abs(ahead[:, 1]).max() < 1e-9 * ahead[1, 0]
+    # At rest Gamma = K^2/E in plane stress.
+    assert slow[0, 0] == pytest.approx(np.sqrt(GAMMA * 5.65e9 / (2 * np.pi * 1e-3)), rel=1e-7)
+    with pytest.raises(slipfront.CaseError, match="the field ends at 1233"):
+        slipfront.tip_field(EQUAL, 1e-3, 1e-3, speed_m_per_s=1300, Gamma_J_per_m2=1)
+
+
 def test_unequal_bodies_have_no_field():
     unequal = {"material": PMMA, "base": {"kind": "body", **PMMA, "youngs_modulus_Pa": 70e9}}
     with pytest.raises(slipfront.CaseError, match="the bodies differ"):
