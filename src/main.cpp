@@ -88,6 +88,7 @@ void run(int argc, char** argv, slipfront::Processes& processes) {
   auto& app = program.app();
   slipfront::cli::add_run(app, processes);
   slipfront::cli::add_info(app);
+  slipfront::cli::add_fracture(app);
   slipfront::cli::add_validate(app);
   slipfront::cli::add_new(app);
   slipfront::cli::add_keys(app);

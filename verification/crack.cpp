@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fracture/prediction.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "verification/loaded_plane.hpp"
 #include "verification/orders.hpp"
@@ -40,44 +41,11 @@ double fracture_energy_J_per_m2(const interface::SlipWeakening& law) {
   return 0.5 * law.d_c_m * (law.mu_s - law.mu_k) * p_Pa;
 }
 
-/// Y(v): stiffness of a crack tip at speed v.
-double tip_stiffness_Pa(double v) {
-  if (v == 0) return sliding_stiffness_Pa();
-  const double a_d = std::sqrt(1 - std::pow(v / c_L, 2)), a_s = std::sqrt(1 - std::pow(v / c_S, 2));
-  return solid::shear_modulus_Pa(undamped) * a_d * std::pow(v / c_S, 2) / (1 - a_d * a_s);
-}
-
-/// K(v)/K(0) under a load that is there from the beginning: sqrt(1 - v/c_L)/S+(-1/v).
-double universal_K(double v) {
-  if (v == 0) return 1;
-  const double a = 1 / c_L, b = 1 / c_S;
-  constexpr int n = 400;  // midpoint rule in an angle: both ends of the integrand are square roots
-  double integral = 0;
-  for (int j = 0; j < n; ++j) {
-    const double angle = (j + 0.5) * pi / n;
-    const double slowness = 0.5 * (a + b) - 0.5 * (b - a) * std::cos(angle);
-    const double alpha_beta = std::sqrt((slowness * slowness - a * a) * (b * b - slowness * slowness));
-    integral += std::atan2(alpha_beta, slowness * slowness) / (1 / v - slowness) * 0.5 * (b - a) *
-                std::sin(angle) * pi / n;
-  }
-  return std::sqrt(1 - v / c_L) * std::exp(-integral / pi);
-}
-
-/// G(v)/G(0) under such a load.
-double universal_G(double v) {
-  const double k = universal_K(v);
-  return k * k * sliding_stiffness_Pa() / tip_stiffness_Pa(v);
-}
-
-/// v at which G(v)/G(0) has a value; c_S where even c_S leaves more.
-double speed_at(double ratio) {
-  if (ratio >= 1) return 0;
-  double low = 0, high = c_S;
-  for (int j = 0; j < 60; ++j) {
-    const double v = 0.5 * (low + high);
-    (universal_G(v) > ratio ? low : high) = v;
-  }
-  return low;
+/// v at which the energy release rate of a long crack under a load that is there from the beginning is this
+/// share of that at rest; c_S where even c_S leaves more.
+double speed_at(double share) {
+  static const fracture::SpeedLaw law{fracture::Bodies(undamped)};
+  return law.speed_m_per_s(share);
 }
 
 /// First place to the right of `from_m` at which the slip is below `slip_m`, between nodes.

@@ -26,6 +26,8 @@ namespace growing_modes_of_two { Outcome verify(Effort effort); }
 namespace growing_modes_with_state { Outcome verify(Effort effort); }
 namespace slip_patch { Outcome verify(Effort effort); }
 namespace crack { Outcome verify(Effort effort); }
+namespace static_crack { Outcome verify(Effort effort); }
+namespace self_similar_crack { Outcome verify(Effort effort); }
 namespace layer_spectrum { Outcome verify(Effort effort); }
 namespace impact { Outcome verify(Effort effort); }
 namespace block { Outcome verify(Effort effort); }

@@ -57,6 +57,9 @@ std::span<const Verification> verifications() {
       Verification{"recontact", "A sliding node that leaves the plane and lands", recontact::verify},
       Verification{"stiff_base", "The rigid plane as the limit of stiff bases", stiff_base::verify},
       Verification{"nucleation", "Lengths at which slip runs away", nucleation::verify},
+      Verification{"static_crack", "Energy release rate of cracks at rest", static_crack::verify},
+      Verification{"self_similar_crack", "Fracture energy and speed of a crack that grows from a point",
+                   self_similar_crack::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;

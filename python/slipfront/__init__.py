@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from slipfront.material import stable_step_s as stable_step_s
     from slipfront.material import wave_speeds as wave_speeds
     from slipfront.material import well_posedness as well_posedness
+    from slipfront.fracture import predict_fronts as predict_fronts
     from slipfront.measures import FrontSettings as FrontSettings
     from slipfront.measures import criteria as criteria
     from slipfront.measures import find_fronts as find_fronts
@@ -50,6 +51,9 @@ if TYPE_CHECKING:
     from slipfront.onsets import read_onsets as read_onsets
     from slipfront.opened import OpenRun as OpenRun
     from slipfront.opened import open as open
+    from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
+    from slipfront.other_codes import read_sem2dpack as read_sem2dpack
+    from slipfront.other_codes import read_uguca as read_uguca
     from slipfront.running import info as info
     from slipfront.running import resume as resume
     from slipfront.running import run as run
@@ -89,6 +93,7 @@ _PLACES = {
     "stable_step_s": "material",
     "wave_speeds": "material",
     "well_posedness": "material",
+    "predict_fronts": "fracture",
     "FrontSettings": "measures",
     "criteria": "measures",
     "find_fronts": "measures",
@@ -99,6 +104,9 @@ _PLACES = {
     "read_onsets": "onsets",
     "OpenRun": "opened",
     "open": "opened",
+    "read_seissol_fault_receivers": "other_codes",
+    "read_sem2dpack": "other_codes",
+    "read_uguca": "other_codes",
     "info": "running",
     "resume": "running",
     "run": "running",

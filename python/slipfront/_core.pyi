@@ -678,6 +678,11 @@ def find_fronts_in_history(time_s: Annotated[NDArray[numpy.float64], dict(shape=
 def energy_density_J_per_m3(t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], youngs_modulus_Pa: float, poissons_ratio: float, plane_strain: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
     """Kammer et al. 2012, Eq. 2."""
 
+def predict_fronts(case: Case, x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], fracture_energy_J_per_m2: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], residual_coefficient: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], at_x_m: float | None) -> dict:
+    """
+    Fronts of a case by the equation of motion of cracks; empty arrays leave friction to the law.
+    """
+
 class Estimate:
     """A value with a two-sided confidence interval."""
 

@@ -9,8 +9,8 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from slipfront import _core
-from slipfront.given import column, flag, instance, number, refusing, text
-from slipfront.measures import Arrays, given_in_order, history_arrays, tractions_at
+from slipfront.given import column, flag, in_order, instance, number, refusing, text
+from slipfront.measures import Arrays, history_arrays, tractions_at
 from slipfront.running import CaseLike, make_case
 
 
@@ -43,7 +43,7 @@ def collapse(outcomes: Iterable[_core.Outcome], *, without_tails: bool = False) 
     V_tip/c_L over the energy rise, and the share of points in the paper's band.
 
     without_tails: without the last 20 mm of fronts that arrest or run out of contact."""
-    events = given_in_order(outcomes, "outcomes", "a list of slipfront.Outcome")
+    events = in_order(outcomes, "outcomes", "a list of slipfront.Outcome")
     for event in events:
         instance(event, _core.Outcome, "one of outcomes")
     return _core.collapse(events, flag(without_tails, "without_tails"))

@@ -23,7 +23,7 @@ LIST = "checksums.sha256"
 PUBLISHING = "publishing"
 UNFINISHED = "unfinished"
 RUN_FILES = (
-    "run.json", "case.resolved.toml", "static.csv", "fronts.csv", "energy.csv", "interface.h5",
+    "run.json", "case.resolved.toml", "static.csv", "fronts.csv", "fracture.csv", "energy.csv", "interface.h5",
     "fields.vtkhdf", "probes.h5",
 )  # fmt: skip
 

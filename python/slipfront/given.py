@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import os
 import reprlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -108,6 +108,15 @@ def instance(value: Any, kind: type, name: str) -> Any:
     if not isinstance(value, kind):
         raise CaseError(f"{name} is {shown(value)}; it must be a slipfront.{kind.__name__}")
     return value
+
+
+def in_order(values: Any, name: str, what: str) -> list[Any]:
+    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
+        raise CaseError(f"{name} is {shown(values)}; it must be {what}")
+    try:
+        return list(values)
+    except TypeError:  # an array without dimensions
+        raise CaseError(f"{name} is {shown(values)}; it must be {what}") from None
 
 
 def array(values: Any, name: str, *, dims: int = 1, finite: bool = False) -> np.ndarray:

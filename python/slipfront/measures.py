@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import CaseError
-from slipfront.given import array, column, instance, number, refusing, shown, whole
+from slipfront.given import array, column, in_order, instance, number, refusing, shown, whole
 from slipfront.onsets import NONE, without_marks
 from slipfront.read import FRONT_COLUMNS
 from slipfront.units import attributes
@@ -392,19 +392,10 @@ def fitted(fit: _core.ExponentialFit, x: ArrayLike) -> Any:
 _core.ExponentialFit.__call__ = fitted  # type: ignore[method-assign, assignment]
 
 
-def given_in_order(values: Any, name: str, what: str) -> list[Any]:
-    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
-        raise CaseError(f"{name} is {shown(values)}; it must be {what}")
-    try:
-        return list(values)
-    except TypeError:  # an array without dimensions
-        raise CaseError(f"{name} is {shown(values)}; it must be {what}") from None
-
-
 def as_series(series: Iterable[Series]) -> list[tuple[np.ndarray, np.ndarray]]:
     pairs = []
-    for k, each in enumerate(given_in_order(series, "series", "a list of pairs (x, y)")):
-        pair = given_in_order(each, f"series[{k}]", "a pair (x, y)")
+    for k, each in enumerate(in_order(series, "series", "a list of pairs (x, y)")):
+        pair = in_order(each, f"series[{k}]", "a pair (x, y)")
         if len(pair) != 2:
             raise CaseError(f"series[{k}] has {len(pair)} parts; it must be a pair (x, y)")
         pairs.append((array(pair[0], f"x of series[{k}]"), array(pair[1], f"y of series[{k}]")))

@@ -211,6 +211,21 @@ class OpenRun:
         return xr.Dataset(points, coordinates, self._attributes())
 
     @cached_property
+    def fracture(self) -> xr.Dataset:
+        """fracture.csv over `point`, the points of `fronts`: front_id, x_m, onset_s, v_tip_m_per_s, breakdown
+        work, peak and residual traction, weakening distance and time, stress drop, cohesive zone, stress
+        intensity factor, energy release rate by the slip behind the tip (docs/fracture.md). Empty of a run
+        by an earlier version."""
+        file = self.folder / "fracture.csv"
+        if not belongs(file):
+            return xr.Dataset(attrs=self._attributes())
+        table = read_table(result_file(file), growing=self._place.growing)
+        points = table_variables(table, "point")
+        points["front_id"] = points["front_id"].astype(np.int64)
+        coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
+        return xr.Dataset(points, coordinates, self._attributes())
+
+    @cached_property
     def energies(self) -> xr.Dataset:
         """energy.csv over time_s: energies, works since the start and what they leave open, J/m of
         thickness."""

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 #: Endings of names, the longest first.
 ENDINGS = {
+    "_Pa_sqrt_m": "Pa m1/2",
     "_kg_per_m3": "kg/m3",
     "_J_per_m3": "J/m3",
     "_J_per_m2": "J/m2",
@@ -49,6 +50,20 @@ LONG_NAMES = {
     "front": "number of the front",
     "onset_s": "time at which slip begins",
     "v_tip_m_per_s": "speed of the front's tip",
+    "breakdown_work_J_per_m2": "breakdown work: fracture energy",
+    "peak_t_Pa": "largest tangential traction, where slip begins",
+    "residual_t_Pa": "residual tangential traction",
+    "residual_coefficient": "least ratio of t, less the cohesion, to p behind the tip",
+    "weakening_distance_m": "slip of a linear fall from peak to residual traction with the same breakdown work",
+    "weakening_time_s": "time of a fall linear in time with the same impulse above the residual traction",
+    "breakdown_complete": "1 where the breakdown came to its end",
+    "stress_drop_Pa": "tangential traction before the event less the residual one",
+    "cohesive_zone_m": "length behind the tip in which friction weakens",
+    "K_Pa_sqrt_m": "stress intensity factor of the breakdown work",
+    "G_slip_J_per_m2": "energy release rate by the slip behind the tip",
+    "G_static_J_per_m2": "energy release rate of the crack at rest",
+    "fracture_energy_J_per_m2": "fracture energy",
+    "length_m": "length of the crack",
     "speed_kind": "what begins to slip over the length of the speed",
     "direction": "direction of the front along x",
     "direction_of_point": "direction of the front along x",

@@ -19,6 +19,7 @@ void add_reproduce(CLI::App& app);
 void add_study(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_info(CLI::App& app);
+void add_fracture(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_validate(CLI::App& app);
 void add_new(CLI::App& app);

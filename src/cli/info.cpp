@@ -13,7 +13,9 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "files/text.hpp"
+#include "fracture/prediction.hpp"
 #include "run/choices.hpp"
+#include "run/fracture.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::cli {
@@ -140,6 +142,23 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
   add_zone();
 }
 
+/// In short what `slipfront fracture` tells, where that takes no statics and the law has a fracture energy.
+void add_cracks(const input::Case& config, Listing& list) {
+  if (!input::is_prestressed(config) || config.plate.top == mesh::Top::loaded ||
+      config.event == interface::EventKind::none || !interface::weakening_slip_m(config.friction))
+    return;
+  const auto of = run::predict_fronts(config).of_fronts;
+  auto text = of.starts ? fmt::format("the first crack, {:.3g} m, runs", of.first_length_m)
+              : std::isfinite(of.critical_length_m)
+                  ? fmt::format("the first crack, {:.3g} m, does not run; from {:.3g} m on it would",
+                                of.first_length_m, of.critical_length_m)
+                  : "none runs from there, however long";
+  for (const auto& front : of.fronts)
+    if (front.end == fracture::PredictedEnd::arrest)
+      text += fmt::format("; arrests at {:.4g} m", front.points.back().x_m);
+  list.add("fronts as cracks", text);
+}
+
 void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
   if (rupture.tip_slip_rate_m_per_s) {
     list.add("a front's tip",
@@ -233,6 +252,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
                          speed_m_per_s, speed_m_per_s * config.time.end_s));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
+  add_cracks(config, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
   for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);
   for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);

@@ -13,6 +13,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
 #include "cli/print.hpp"
+#include "fracture/passage.hpp"
 #include "fronts/fit.hpp"
 #include "results/folder.hpp"
 #include "run/choices.hpp"
@@ -87,6 +88,28 @@ std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds
   return std::ranges::all_of(front.points, is_triggered) ? "did not leave the trigger" : "speed undefined";
 }
 
+/// Medians over the front's nodes.
+std::string fracture_text(const run::Result& result, const fronts::Front& front) {
+  const auto& event = result.event;
+  const auto passages = fracture::passages(front, {event.record.x_m, event.breakdown, event.tip_slip},
+                                           run::bodies_of(result.config));
+  std::vector<double> work, zone_m, G_slip;
+  for (std::size_t k = 0; k < passages.size(); ++k) {
+    const auto node = static_cast<std::size_t>(front.points[k].node);
+    if (event.breakdown.complete[node] != 0) work.push_back(event.breakdown.work_J_per_m2[node]);
+    zone_m.push_back(passages[k].cohesive_zone_m);
+    G_slip.push_back(passages[k].G_slip_J_per_m2);
+  }
+  const double gamma = fronts::median(work), G = fronts::median(G_slip), zone = fronts::median(zone_m);
+  if (!(gamma > 0)) return {};
+  auto text = fmt::format("  fracture energy {:.3g} J/m2", gamma);
+  if (std::isfinite(G)) text += fmt::format(", G by slip {:.3g} J/m2", G);
+  if (std::isfinite(zone))
+    text += fmt::format(", cohesive zone {:.2g} m, {:.2g} elements", zone,
+                        zone / result.config.plate.element_size_m);
+  return text + "\n";
+}
+
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   if (initial.prescribed)
@@ -117,6 +140,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
           front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
           1e6 * front.points.back().onset_s, speed_text(front, result.speeds), fronts::name(front.mode),
           fronts::name(front.end));
+    print("{}", fracture_text(result, front));
   }
   print_rupture(run::rupture_outlook(result.config, initial.common, initial.tributary_m));
   for (const auto& warning : result.warnings) print("note: {}\n", warning);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/numbers.hpp"
+#include "solid/material.hpp"
 
 namespace slipfront::fracture {
 

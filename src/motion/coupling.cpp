@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "interface/breakdown.hpp"
 
 namespace slipfront::motion {
 
@@ -100,6 +101,7 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
     interface_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
     interface_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
     interface_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
+    interface_.broken[i] = interface_.slipping[i];
   }
   std::ranges::fill(interface_.intact, 1.0);
   start_contact(contact_, interface_);
@@ -171,6 +173,7 @@ void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, reco
   if (sample != nullptr) append_law_states(*sample);
   const bool changed = interface::update_contact(contact_, dt_s, interface_);
   observer.observe(time_s, interface_, changed);
+  interface::follow_breakdown(contact_, dt_s, v_x_before_, changed, interface_);
   if (sample != nullptr) append_sample(time_s, *sample);
   if (sides_.empty())
     scatter(dt_s, works);
@@ -189,6 +192,10 @@ SlipRates Coupling::slip_rates() const {
       rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, v);
   }
   return rates;
+}
+
+record::Breakdown Coupling::breakdown() const {
+  return interface::breakdown_of(contact_, interface_, own_begin_, own_end_);
 }
 
 double Coupling::largest_acceleration_m_per_s2() const {

@@ -11,6 +11,7 @@
 #include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
 #include "motion/time_stepper.hpp"
+#include "record/breakdown.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
@@ -77,6 +78,8 @@ class Coupling {
       for (auto* values : {&side.v_x, &side.v_y}) visit(values->data() + nodes.begin, n);
   }
   SlipRates slip_rates() const;
+  /// Of own nodes.
+  record::Breakdown breakdown() const;
   /// Of a node whose tractions are not balanced.
   double largest_acceleration_m_per_s2() const;
 

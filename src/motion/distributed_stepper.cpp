@@ -428,6 +428,16 @@ record::Energies DistributedStepper::energies() {
   return sum;
 }
 
+record::Breakdown DistributedStepper::breakdown() const {
+  halo_->finish();
+  record::Breakdown all;
+  for (const auto& own : processes_.all_gather_value(stepper_->breakdown()))
+    for (const auto& field : record::breakdown_fields)
+      (all.*field.member)
+          .insert((all.*field.member).end(), (own.*field.member).begin(), (own.*field.member).end());
+  return all;
+}
+
 std::vector<SubdomainCost> DistributedStepper::costs() const {
   const auto& now = processes_.counters();
   return processes_.all_gather_value(

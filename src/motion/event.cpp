@@ -46,6 +46,7 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   Observers list;
   list.push_back(std::make_unique<Onsets>(state.tractions.x_m, halo));
   list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, *output));
+  list.push_back(std::make_unique<TipSlips>(state, sampling.history_interval_s));
   if (!stepper_.probes().empty())
     list.push_back(
         std::make_unique<ProbeRows>(stepper_, sampling.probe_interval_s, sampling.further_stress, *output));
@@ -76,6 +77,8 @@ Event EventRun::run() {
   event.time_s = stepper_.time_s();
   event.quiet_slip_rate_m_per_s = quiet_slip_rate_m_per_s_;
   event.record = record();
+  event.breakdown = stepper_.breakdown();
+  event.tip_slip = tip_slip();
   event.energies = run_.get<EnergyRows>().take_rows();
   if (kept_) {
     event.history = std::move(kept_->history);

@@ -14,7 +14,10 @@
 #include "motion/observers/onsets.hpp"
 #include "motion/observers/progress.hpp"
 #include "motion/observers/rest_criterion.hpp"
+#include "motion/observers/tip_slips.hpp"
+#include "record/breakdown.hpp"
 #include "record/record.hpp"
+#include "record/tip_slip.hpp"
 #include "solid/element.hpp"
 #include "statics/statics.hpp"
 
@@ -37,6 +40,8 @@ struct Event {
   double time_s = 0;
   double quiet_slip_rate_m_per_s = 0;  ///< slower slip that does not grow counts as none, see RestCriterion
   record::SlipRecord record;
+  record::Breakdown breakdown;
+  record::TipSlip tip_slip;
   record::History history;                 ///< without an output
   std::vector<Snapshot> snapshots;         ///< without an output
   record::ProbeRecord probes;              ///< without an output
@@ -45,7 +50,7 @@ struct Event {
   /// Without what an output would take.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(end, reason, steps, time_s, quiet_slip_rate_m_per_s, record, energies);
+    archive(end, reason, steps, time_s, quiet_slip_rate_m_per_s, record, breakdown, tip_slip, energies);
   }
 };
 
@@ -77,6 +82,7 @@ class EventRun {
   const std::vector<record::Energies>& energies() const { return run_.get<EnergyRows>().rows(); }
   /// Of what has happened so far.
   record::SlipRecord record() const { return run_.get<Onsets>().record_until(stepper_.time_s()); }
+  const record::TipSlip& tip_slip() const { return run_.get<TipSlips>().record(); }
 
   /// All that changes while the monitor is asked, but for the stepper and what an output would take.
   void serialize(StateArchive& archive) { run_.archive(archive); }

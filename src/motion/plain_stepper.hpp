@@ -46,6 +46,7 @@ class PlainStepper : public TimeStepper {
   std::span<const PlainBody> bodies() const { return bodies_; }
   const interface::Interface& interface_state() const { return coupling_.state(); }
   record::Energies energies() override;
+  record::Breakdown breakdown() const override { return coupling_.breakdown(); }
   double kinetic_energy_J_per_m() const override;
   double mass_kg_per_m() const override;
   double energy_of_tractions_J_per_m() const override;

@@ -134,6 +134,7 @@ class Stepper : public TimeStepper {
   double mass_kg_per_m() const override;
   double energy_of_tractions_J_per_m() const override;
   record::Energies energies() override;
+  record::Breakdown breakdown() const override { return coupling_.breakdown(); }
 
   int n_snapshot_chunks() const override { return 1; }
   std::size_t snapshot_chunk_bytes() const override;

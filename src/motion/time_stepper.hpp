@@ -11,6 +11,7 @@
 #include "motion/probes.hpp"
 #include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
+#include "record/breakdown.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
 #include "solid/operator.hpp"
@@ -107,6 +108,8 @@ class TimeStepper {
   /// Energies and works up to the last half (sub-)step.
   virtual record::Energies energies() = 0;
   virtual double kinetic_energy_J_per_m() const = 0;
+  /// How friction has broken down so far, at all interface nodes.
+  virtual record::Breakdown breakdown() const = 0;
   virtual double mass_kg_per_m() const = 0;
   /// Kinetic energy of bodies that move as fast as an interface node would after one step in which its
   /// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the bodies' area.

@@ -33,9 +33,9 @@ constexpr const char* state_name = "state";
 constexpr const char* kind_name = "kind";
 
 /// Names that a run's results have.
-constexpr std::array<const char*, 7> names_of_run = {"case.resolved.toml", "run.json",   "interface.h5",
-                                                     "fronts.csv",         "static.csv", "energy.csv",
-                                                     "fields.vtkhdf"};
+constexpr std::array<const char*, 8> names_of_run = {"case.resolved.toml", "run.json",     "interface.h5",
+                                                     "fronts.csv",         "fracture.csv", "static.csv",
+                                                     "energy.csv",         "fields.vtkhdf"};
 
 std::string overwrite_option() {
   return for_caller("--overwrite", "overwrite=True");

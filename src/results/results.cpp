@@ -67,4 +67,27 @@ void write_fronts(const std::filesystem::path& file, std::span<const fronts::Fro
   files::write_text(file, text);
 }
 
+void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
+                    const fracture::Recorded& recorded, const fracture::Bodies& bodies) {
+  std::string text = "front_id,x_m,onset_s,direction,v_tip_m_per_s";
+  for (const auto& column : record::breakdown_fields) text += fmt::format(",{}", column.name);
+  for (const auto& column : fracture::passage_fields) text += fmt::format(",{}", column.name);
+  text += "\n";
+  for (const auto& front : fronts) {
+    const auto passages = fracture::passages(front, recorded, bodies);
+    for (std::size_t k = 0; k < passages.size(); ++k) {
+      const auto& point = front.points[k];
+      text += fmt::format("{},{},{},{},{}", front.id, field(point.x_m), field(point.onset_s), front.direction,
+                          field(point.v_tip_m_per_s));
+      for (const auto& column : record::breakdown_fields)
+        text += fmt::format(",{}",
+                            field((recorded.breakdown.*column.member)[static_cast<std::size_t>(point.node)]));
+      for (const auto& column : fracture::passage_fields)
+        text += fmt::format(",{}", field(passages[k].*column.member));
+      text += "\n";
+    }
+  }
+  files::write_text(file, text);
+}
+
 }  // namespace slipfront::results

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "fracture/passage.hpp"
 #include "fronts/front.hpp"
+#include "record/breakdown.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
 
@@ -25,6 +27,12 @@ void write_static(const std::filesystem::path& file, const record::StaticState& 
 /// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, speed_kind (fronts::SpeedKind), a row per front and node in the order
 /// of travel; what is undefined is left empty.
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts);
+
+/// fracture.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, record::breakdown_fields of the node and
+/// fracture::passage_fields, a row per front and node in the order of travel; what is undefined is left
+/// empty.
+void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
+                    const fracture::Recorded& recorded, const fracture::Bodies& bodies);
 
 /// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per
 /// instant; the first is the start.

@@ -295,6 +295,7 @@ void Session::keep() {
 
 void Session::write_progress() {
   const auto start = Clock::now();
+  auto breakdown = stepper_->breakdown();
   if (!is_root()) {
     unmeasured(config_, *stepper_, {});
     return;
@@ -305,6 +306,8 @@ void Session::write_progress() {
   const auto& energies = event_->energies();
   so_far.energies = {energies.front(), energies.back()};
   so_far.record = event_->record();
+  so_far.breakdown = std::move(breakdown);
+  so_far.tip_slip = event_->tip_slip();
   auto result = unmeasured(config_, *stepper_, std::move(so_far));
   stream_->hand_over();
   result.stepping_wall_s = wall_s();

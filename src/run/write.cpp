@@ -51,6 +51,16 @@ Json energy_json(const record::Energies& e) {
   return json;
 }
 
+/// What friction takes: the breakdown at tips, and heat at the residual traction.
+Json friction_work_json(const Result& result, const InitialState& initial) {
+  const auto& work = result.event.breakdown.work_J_per_m2;
+  double breakdown = 0;
+  for (std::size_t k = 0; k < work.size(); ++k)
+    if (!std::isnan(work[k])) breakdown += work[k] * initial.tributary_m[k];
+  const double all = -result.event.energies.back().friction_work;
+  return {{"breakdown_J_per_m", breakdown}, {"residual_J_per_m", all - breakdown}};
+}
+
 Json loads_json(const FoundLoads& loads) {
   return {{"normal_force_N_per_m", loads.normal_force_N_per_m},
           {"mean_pressure_Pa", loads.mean_pressure_Pa},
@@ -239,6 +249,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                 status.name == "running" ? Json() : Json(snapshots_after(result.config, event.time_s))},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
+  json["friction_work"] = friction_work_json(result, initial);
   if (initial.prescribed) json["prestress"] = prestress_json(result.config);
   if (result.shared) json["processes"] = processes_json(*result.shared);
   if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;
@@ -333,6 +344,9 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status) {
   results::write_fronts(dir / "fronts.csv", result.fronts);
+  results::write_fracture(dir / "fracture.csv", result.fronts,
+                          {result.event.record.x_m, result.event.breakdown, result.event.tip_slip},
+                          bodies_of(result.config));
   results::write_energies(dir / "energy.csv", energies);
   write_json(dir, run_json(result, initial, status));
 }

@@ -159,7 +159,7 @@ def test_result_name_taken_by_a_folder(program, coarse, tmp_path):
     assert (tmp_path / "out/run.json").is_dir()
 
 
-RESULTS = ("interface.h5", "fronts.csv", "energy.csv")
+RESULTS = ("interface.h5", "fronts.csv", "fracture.csv", "energy.csv")
 
 
 @pytest.mark.parametrize(

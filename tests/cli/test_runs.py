@@ -36,7 +36,15 @@ from common import (
 )
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
 
-SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
+SO_FAR = {
+    "case.resolved.toml",
+    "run.json",
+    "interface.h5",
+    "fronts.csv",
+    "fracture.csv",
+    "static.csv",
+    "energy.csv",
+}
 FILES = SO_FAR | {"checksums.sha256"}
 
 
@@ -396,7 +404,7 @@ def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
     assert {front["direction"] for front in run_json(tmp_path / "out")["fronts"]} == {-1, 1}
 
     require_done(program("run", "out/case.resolved.toml", "-o", "again", "-q"))
-    same = ("fronts.csv", "energy.csv", "static.csv", "interface.h5", "case.resolved.toml")
+    same = ("fronts.csv", "fracture.csv", "energy.csv", "static.csv", "interface.h5", "case.resolved.toml")
     require_same_bytes(tmp_path / "out", tmp_path / "again", *same)
 
 

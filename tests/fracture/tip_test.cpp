@@ -59,6 +59,20 @@ TEST(Tip, AlikeBodiesAreThoseOfFreund) {
   }
 }
 
+/// k(V) of a crack on the rigid plane, verification/crack.md, by the midpoint rule.
+double k_of_rigid_plane(const solid::Material& m, double v) {
+  const double a = 1 / solid::longitudinal_speed_m_per_s(m), b = 1 / solid::shear_speed_m_per_s(m);
+  constexpr int n = 20000;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double angle = std::numbers::pi * (i + 0.5) / n;
+    const double s = 0.5 * (a + b) - 0.5 * (b - a) * std::cos(angle), s2 = s * s;
+    sum += std::atan2(std::sqrt((s2 - a * a) * (b * b - s2)), s2) / (1 / v - s) * 0.5 * (b - a) *
+           std::sin(angle) / n;
+  }
+  return std::sqrt(1 - v * a) * std::exp(-sum);
+}
+
 TEST(Tip, RigidPlaneHasNoRayleighSpeed) {
   const auto m = material(0.33);
   const Bodies bodies(m);
@@ -68,7 +82,10 @@ TEST(Tip, RigidPlaneHasNoRayleighSpeed) {
   for (const double share : {0.2, 0.9, 0.999}) {
     const double m_2 = share * share, c = c_S / solid::longitudinal_speed_m_per_s(m);
     const double a_d = std::sqrt(1 - m_2 * c * c), a_s = std::sqrt(1 - m_2);
-    EXPECT_NEAR(stiffness_Pa(bodies, share * c_S), G * a_d * m_2 / (1 - a_d * a_s), 1e-9 * G) << share;
+    const double Y = G * a_d * m_2 / (1 - a_d * a_s);
+    EXPECT_NEAR(stiffness_Pa(bodies, share * c_S), Y, 1e-9 * G) << share;
+    const double k = k_of_rigid_plane(m, share * c_S);
+    EXPECT_NEAR(speed_factor(bodies, share * c_S), k * k * stiffness_Pa(bodies, 0) / Y, 1e-6) << share;
   }
 }
 

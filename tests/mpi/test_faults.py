@@ -190,7 +190,7 @@ def test_other_processes_read_no_file(mpirun, case, tmp_path):
     require_done(mpirun(2, *with_table, programs=programs))
     assert not list(other.iterdir())
     require_done(mpirun.alone(*with_table))
-    names = ("interface.h5", "fields.vtkhdf", "fronts.csv", "static.csv")
+    names = ("interface.h5", "fields.vtkhdf", "fronts.csv", "fracture.csv", "static.csv")
     require_same_bytes(leader / "out", tmp_path / "out", *names)
 
 

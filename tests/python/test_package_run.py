@@ -32,7 +32,15 @@ from slipfront.sweep.definition import flattened as values
 from synthetic import interrupt
 
 # What does not depend on when and where a run was done.
-SAME_FILES = ("case.resolved.toml", "interface.h5", "fronts.csv", "energy.csv", "static.csv", "fields.vtkhdf")
+SAME_FILES = (
+    "case.resolved.toml",
+    "interface.h5",
+    "fronts.csv",
+    "fracture.csv",
+    "energy.csv",
+    "static.csv",
+    "fields.vtkhdf",
+)
 # Long enough to be interrupted.
 LONG = CASE.replace("5e-3", "2e-3") + "\n[time]\nend_s = 1.0\nquiet_s = inf\n"
 
@@ -238,7 +246,9 @@ def test_the_state_of_a_law_is_in_the_history(tmp_path):
     assert np.array_equal(shown, history.psi[:10])
     resumed = slipfront.resume(tmp_path / "again", threads=2)
     assert resumed.info["sessions"] == 2
-    require_same_bytes(tmp_path / "out", tmp_path / "again", "interface.h5", "fronts.csv", "energy.csv")
+    require_same_bytes(
+        tmp_path / "out", tmp_path / "again", "interface.h5", "fronts.csv", "fracture.csv", "energy.csv"
+    )
 
     (tmp_path / "again/checksums.sha256").unlink()
     interrupt(tmp_path / "again", "running")  # of whose history there are the rows alone

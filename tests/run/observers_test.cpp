@@ -115,7 +115,7 @@ TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
     EXPECT_GE(seen.time_s[k], 10e-6 * static_cast<double>(k));
     EXPECT_LT(seen.time_s[k], 10e-6 * static_cast<double>(k) + result.result.step_s);
   }
-  for (const char* file : {"interface.h5", "fronts.csv", "energy.csv"})
+  for (const char* file : {"interface.h5", "fronts.csv", "fracture.csv", "energy.csv"})
     EXPECT_EQ(test::read_file(plain / file), test::read_file(observed / file)) << file;
 }
 

@@ -77,8 +77,9 @@ void expect_table(const std::filesystem::path& file, const std::string& header,
 }
 
 TEST_F(WrittenRun, HasTheFilesByTheirNames) {
-  auto names = std::set<std::string>{"case.resolved.toml", "run.json",   "interface.h5",  "fronts.csv",
-                                     "static.csv",         "energy.csv", "fields.vtkhdf", "checksums.sha256"};
+  auto names = std::set<std::string>{"case.resolved.toml", "run.json",      "interface.h5",
+                                     "fronts.csv",         "fracture.csv",  "static.csv",
+                                     "energy.csv",         "fields.vtkhdf", "checksums.sha256"};
   EXPECT_EQ(names_in(s.folder.path()), names);
   files::require_intact(s.folder.path());
   // Without snapshots there are no fields.

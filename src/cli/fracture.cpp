@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/fracture.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/error.hpp"
+#include "cli/command.hpp"
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/print.hpp"
+#include "files/files.hpp"
+#include "fracture/prediction.hpp"
+#include "run/choices.hpp"
+
+namespace slipfront::cli {
+namespace {
+
+struct FractureOptions {
+  std::optional<double> fracture_energy_J_per_m2, residual_coefficient, x_m;
+  std::string output;
+};
+
+std::string csv(const fracture::Prediction& prediction) {
+  std::string text = "direction";
+  for (const auto& column : fracture::predicted_fields) text += fmt::format(",{}", column.name);
+  text += "\n";
+  for (const auto& front : prediction.fronts)
+    for (const auto& point : front.points) {
+      text += fmt::format("{}", front.direction);
+      for (const auto& column : fracture::predicted_fields) {
+        const double value = point.*column.member;
+        text += std::isnan(value) ? "," : fmt::format(",{}", value);
+      }
+      text += "\n";
+    }
+  return text;
+}
+
+std::string line_of(const fracture::PredictedFront& front, double c_S) {
+  const auto& last = front.points.back();
+  double fastest = 0;
+  for (const auto& point : front.points) fastest = std::max(fastest, point.v_tip_m_per_s);
+  const auto runs =
+      fmt::format("front to {}x: from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
+                  front.direction > 0 ? '+' : '-', front.points.front().x_m, fastest, fastest / c_S);
+  if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
+  return runs + fmt::format("arrests at {:.4f} m: G {:.3g} J/m2, fracture energy {:.3g}\n", last.x_m,
+                            last.G_static_J_per_m2, last.fracture_energy_J_per_m2);
+}
+
+void predict(const CaseArguments& arguments, const FractureOptions& options) {
+  const auto given = arguments.read();
+  const auto& config = given.config();
+  run::TipFriction friction;
+  friction.x_m = {0};
+  if (options.fracture_energy_J_per_m2)
+    friction.fracture_energy_J_per_m2 = {*options.fracture_energy_J_per_m2};
+  if (options.residual_coefficient) friction.residual_coefficient = {*options.residual_coefficient};
+  const auto p = given.placing_errors([&] { return run::predict_fronts(config, friction, options.x_m); });
+  const auto& of = p.of_fronts;
+  const double c_S = solid::shear_speed_m_per_s(config.material);
+  std::string text = fmt::format("statics of {}, {} nodes on the interface\n", p.bodies, p.x_m.size());
+  text += fmt::format("first crack {:.4g} m: {}\n", of.first_length_m,
+                      of.starts ? "it runs" : "its energy release rate is below the fracture energy");
+  if (!of.starts)
+    text += std::isnan(of.critical_length_m)
+                ? "no crack from there runs, however long\n"
+                : fmt::format("critical crack {:.4g} m: from this length on it runs\n", of.critical_length_m);
+  for (const auto& front : of.fronts) text += line_of(front, c_S);
+  for (const auto& note : given.notes()) text += fmt::format("note: {}\n", note);
+  for (const auto& note : p.notes) text += fmt::format("note: {}\n", note);
+  if (!options.output.empty()) {
+    files::write_text(options.output, csv(of));
+    text += fmt::format("results: {}\n", options.output);
+  }
+  print_output(text);
+}
+
+}  // namespace
+
+void add_fracture(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "fracture",
+      "Predict a case's fronts as cracks: whether they start, how fast they run, where they arrest");
+  command->group("Cases");
+  const auto arguments = add_case_arguments(*command);
+  auto options = std::make_shared<FractureOptions>();
+  command
+      ->add_option("--fracture-energy", options->fracture_energy_J_per_m2,
+                   "J/m2, instead of that of the friction law; laws that do not weaken over a slip have none")
+      ->check(positive());
+  command
+      ->add_option("--residual-coefficient", options->residual_coefficient,
+                   "Residual traction over pressure, instead of mu_k")
+      ->check(finite());
+  command->add_option("--x", options->x_m, "Where the crack begins, m, instead of at the case's trigger")
+      ->check(finite());
+  command->add_option("-o,--output", options->output, "CSV table, a row per front and node")
+      ->type_name("FILE")
+      ->check(not_empty());
+  command->callback([arguments, options] { predict(*arguments, *options); });
+}
+
+}  // namespace slipfront::cli

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interface/breakdown.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "base/numbers.hpp"
+
+namespace slipfront::interface {
+
+namespace {
+
+/// A breakdown has ended where slip has gone on by this share without a fall of the coefficient that counts.
+constexpr double more_slip = 1.25;
+constexpr double fall_that_counts = 1e-3;  ///< of the one so far
+
+/// On which the coefficient acts.
+double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i) {
+  const auto relaxed = model.regularisation.relaxed;
+  const bool remembers = relaxed == Relaxed::pressure || relaxed == Relaxed::initial_pressure;
+  return s.p_Pa[i] > 0 && remembers ? s.relaxed_Pa[i] : s.p_Pa[i];
+}
+
+void begin(const ContactModel& model, Interface& s, std::size_t i) {
+  auto& b = s.breakdown;
+  s.breaking[i] = 1;
+  b.peak_t_Pa[i] = s.strength_Pa[i];
+  b.peak_coefficient[i] = (s.strength_Pa[i] - model.law_at(i).cohesion_Pa()) / pressure_Pa(model, s, i);
+  b.least_coefficient[i] = b.counted_coefficient[i] = b.peak_coefficient[i];
+  b.residual_t_Pa[i] = s.strength_Pa[i];
+}
+
+void end_breakdown(Interface& s, std::size_t i) {
+  s.breaking[i] = 0;
+  s.broken[i] = 1;
+}
+
+void follow(const ContactModel& model, double dt_s, double v_before_m_per_s, Interface& s, std::size_t i) {
+  auto& b = s.breakdown;
+  const double p_Pa = pressure_Pa(model, s, i);
+  if (!(p_Pa > 0)) {
+    end_breakdown(s, i);
+    return;
+  }
+  const double t_Pa = std::abs(s.t_Pa[i]) - model.law_at(i).cohesion_Pa();
+  // As in the work of friction: at the mean velocity over the kick.
+  const double slip_m = 0.5 * dt_s * (s.v_x_m_per_s[i] + v_before_m_per_s) * std::copysign(1.0, s.t_Pa[i]);
+  const double coefficient = t_Pa / p_Pa;
+  b.work_of_t_J_per_m2[i] += t_Pa * slip_m;
+  b.work_of_p_J_per_m2[i] += p_Pa * slip_m;
+  b.impulse_of_t_Pa_s[i] += t_Pa * dt_s;
+  b.impulse_of_p_Pa_s[i] += p_Pa * dt_s;
+  b.slip_m[i] += std::abs(slip_m);
+  if (s.slipping[i] == 0) return;  // what a node bears that sticks is no friction
+  if (coefficient > b.peak_coefficient[i]) {
+    b.peak_coefficient[i] = b.least_coefficient[i] = b.counted_coefficient[i] = coefficient;
+    b.peak_t_Pa[i] = b.residual_t_Pa[i] = std::abs(s.t_Pa[i]);
+    b.impulse_of_t_Pa_s[i] = b.impulse_of_p_Pa_s[i] = 0;
+    b.counted_slip_m[i] = b.slip_m[i];
+    return;
+  }
+  if (coefficient < b.least_coefficient[i]) {
+    b.least_coefficient[i] = coefficient;
+    b.residual_t_Pa[i] = std::abs(s.t_Pa[i]);
+    b.work_J_per_m2[i] = b.work_of_t_J_per_m2[i] - coefficient * b.work_of_p_J_per_m2[i];
+    b.impulse_Pa_s[i] = b.impulse_of_t_Pa_s[i] - coefficient * b.impulse_of_p_Pa_s[i];
+  }
+  const double fall = b.peak_coefficient[i] - coefficient;
+  if (b.counted_coefficient[i] - coefficient > fall_that_counts * fall) {
+    b.counted_coefficient[i] = coefficient;
+    b.counted_slip_m[i] = b.slip_m[i];
+  } else if (b.least_coefficient[i] < b.peak_coefficient[i] &&
+             b.slip_m[i] > more_slip * b.counted_slip_m[i]) {
+    end_breakdown(s, i);
+  }
+}
+
+}  // namespace
+
+void follow_breakdown(const ContactModel& model, double dt_s, std::span<const double> v_before_m_per_s,
+                      bool changed, Interface& s) {
+  const std::size_t n = s.size();
+  for (std::size_t i = 0; changed && i < n; ++i)
+    if (s.slipping[i] > (s.breaking[i] | s.broken[i])) begin(model, s, i);
+  // Few nodes at a time: eight flags are looked at in one word.
+  for (std::size_t first = 0; first < n; first += sizeof(std::uint64_t)) {
+    std::uint64_t flags = 0;
+    std::memcpy(&flags, &s.breaking[first], std::min(sizeof(flags), n - first));
+    for (; flags != 0; flags &= flags - 1) {
+      const auto i = first + static_cast<std::size_t>(std::countr_zero(flags)) / 8;
+      follow(model, dt_s, v_before_m_per_s[i], s, i);
+    }
+  }
+}
+
+record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, std::size_t first,
+                               std::size_t end) {
+  const auto& b = s.breakdown;
+  record::Breakdown of;
+  for (std::size_t i = first; i < end; ++i) {
+    const bool begun = b.peak_t_Pa[i] > 0;
+    const auto put = [&](std::vector<double>& to, double value) { to.push_back(begun ? value : nan); };
+    // Of the traction at its peak above the residual one.
+    const double p_Pa = (b.peak_t_Pa[i] - model.law_at(i).cohesion_Pa()) / b.peak_coefficient[i];
+    const double fall_Pa = (b.peak_coefficient[i] - b.least_coefficient[i]) * p_Pa;
+    put(of.work_J_per_m2, b.work_J_per_m2[i]);
+    put(of.peak_t_Pa, b.peak_t_Pa[i]);
+    put(of.residual_t_Pa, b.residual_t_Pa[i]);
+    put(of.residual_coefficient, b.least_coefficient[i]);
+    put(of.distance_m, fall_Pa > 0 ? 2 * b.work_J_per_m2[i] / fall_Pa : nan);
+    put(of.time_s, fall_Pa > 0 ? 2 * b.impulse_Pa_s[i] / fall_Pa : nan);
+    of.complete.push_back(begun ? s.broken[i] : 0);
+  }
+  return of;
+}
+
+}  // namespace slipfront::interface

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/fracture.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/caller.hpp"
+#include "base/error.hpp"
+#include "base/numbers.hpp"
+#include "input/friction_along_x.hpp"
+#include "interface/nucleation.hpp"
+#include "motion/trigger_zone.hpp"
+#include "run/choices.hpp"
+#include "run/run.hpp"
+#include "statics/condensed_interface.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+/// Most elements along the interface: with a dense stiffness of the sample, and with kernels.
+constexpr double most_of_sample = 500, most_of_half_spaces = 1000;
+
+/// Whether the sample's edges enter: where its far edge is held.
+bool is_held(const input::Case& config) {
+  return config.plate.top == mesh::Top::loaded;
+}
+
+/// The case in larger elements where it has more than `most` along the interface; others are left.
+input::Case in_fewer_elements(input::Case config, double most) {
+  auto& plate = config.plate;
+  const double h = plate.element_size_m;
+  const double columns = std::round(plate.width_m / h);
+  if (columns <= most) return config;
+  const auto fits = [&](double factor) {
+    const auto divides = [&](double length_m) { return std::fmod(std::round(length_m / h), factor) == 0; };
+    return divides(plate.width_m) && divides(plate.height_m) &&
+           (!input::has_base_body(config) || divides(config.base.plate.height_m));
+  };
+  double factor = std::ceil(columns / most);
+  while (!fits(factor) && factor < columns) ++factor;
+  plate.element_size_m = h * factor;
+  plate.coarsenings = config.base.plate.coarsenings = 0;
+  if (plate.corner != mesh::Corner::none && plate.relief_height_m < 2 * plate.element_size_m)
+    plate.corner = mesh::Corner::none;
+  return config;
+}
+
+/// Of the sample with its far edges held.
+fracture::SlipResponse response_of_sample(const input::Case& config, const InitialState& initial) {
+  using statics::Factorisation;
+  const auto plate =
+      std::make_shared<const Factorisation>(initial.mesh, config.material, statics::TopConstraint::both);
+  std::shared_ptr<const Factorisation> base;
+  if (initial.base)
+    base = std::make_shared<const Factorisation>(*initial.base, input::base_material(config),
+                                                 statics::TopConstraint::both);
+  const statics::CondensedInterface interface(plate, base);
+  return fracture::response_of_sample(interface.stiffness(), interface_x_m(initial.mesh),
+                                      initial.tributary_m);
+}
+
+double at(const std::vector<double>& x_m, const std::vector<double>& values, double x) {
+  const auto above = std::ranges::upper_bound(x_m, x);
+  if (above == x_m.begin()) return values.front();
+  if (above == x_m.end()) return values.back();
+  const auto k = static_cast<std::size_t>(above - x_m.begin());
+  return record::between(values[k - 1], values[k], (x - x_m[k - 1]) / (x_m[k] - x_m[k - 1]));
+}
+
+/// Fills in what friction does behind a tip, and the tractions before it, in the direction of the load.
+void add_friction(const input::Case& config, const TipFriction& given, const statics::Equilibrium& state,
+                  FracturePrediction& p, fracture::CrackLoads& loads) {
+  const auto laws = input::friction_at(config, p.x_m);
+  const bool knows_pressure = config.regularisation.relaxed != interface::Relaxed::initial_pressure;
+  for (std::size_t k = 0; k < p.x_m.size(); ++k) {
+    const auto& law = laws.empty() ? config.friction : laws[k];
+    const double p_Pa = state.tractions.p_s_Pa[k];
+    const double mu_s = interface::static_coefficient(law), mu_k = interface::kinetic_coefficient(law);
+    if (given.fracture_energy_J_per_m2.empty()) {
+      const auto slip_m = interface::weakening_slip_m(law);
+      if (!slip_m)
+        throw UserError(
+            "friction.law = \"{}\" has no fracture energy of its own; give it by --fracture-energy",
+            law.name());
+      p.fracture_energy_J_per_m2.push_back(0.5 * (mu_s - mu_k) * p_Pa * *slip_m);
+    } else {
+      p.fracture_energy_J_per_m2.push_back(at(given.x_m, given.fracture_energy_J_per_m2, p.x_m[k]));
+    }
+    const double residual =
+        given.residual_coefficient.empty() ? mu_k : at(given.x_m, given.residual_coefficient, p.x_m[k]);
+    p.residual_coefficient.push_back(residual);
+    loads.residual_coefficient.push_back(knows_pressure ? residual : 0);
+    loads.cohesion_Pa.push_back(law.cohesion_Pa() + (knows_pressure ? 0 : residual * p_Pa));
+  }
+}
+
+/// Adds the trigger's tractions, where they stay.
+void add_trigger(const input::Case& config, const InitialState& initial, std::vector<double>& t_Pa) {
+  const auto loads = loads_of_event(config, initial);
+  for (std::size_t k = 0; k < loads.trigger_force_N_per_m.size(); ++k)
+    t_Pa[k] += loads.trigger_force_N_per_m[k] / initial.tributary_m[k];
+}
+
+struct Patch {
+  std::size_t first = 0, last = 0;
+};
+
+/// Nodes of the first crack: at a place, the trigger's, or the node that is nearest to its strength.
+Patch first_crack(const input::Case& config, const InitialState& initial, const FracturePrediction& p,
+                  const std::optional<double>& x_m) {
+  const auto nearest = [&](double x) {
+    const auto away = [&](double node_x) { return std::abs(node_x - x); };
+    return static_cast<std::size_t>(std::ranges::min_element(p.x_m, {}, away) - p.x_m.begin());
+  };
+  if (x_m) return {nearest(*x_m), nearest(*x_m)};
+  if (interface::is_at_edge(config.event)) {
+    const auto zone = motion::trigger_zone(initial.common, config.event, config.trigger.zone_m);
+    if (!zone.empty()) return {zone.front(), zone.back()};
+  }
+  if (config.event == interface::EventKind::nucleation) {
+    const auto& n = config.nucleation;
+    return {nearest(n.x_m - 0.5 * n.length_m()), nearest(n.x_m + 0.5 * n.length_m())};
+  }
+  const double peak_x_m = initial.common.peak_x_m;
+  return {nearest(peak_x_m), nearest(peak_x_m)};
+}
+
+}  // namespace
+
+FracturePrediction predict_fronts(const input::Case& given, const TipFriction& friction,
+                                  const std::optional<double>& x_m) {
+  const auto config = in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces);
+  const auto initial = make_initial_state(config, [](auto, auto) { return true; });
+  const auto bodies = bodies_of(config);
+  FracturePrediction p;
+  p.x_m = initial.common.tractions.x_m;
+  p.element_size_m = config.plate.element_size_m;
+  fracture::CrackLoads loads;
+  loads.t_Pa = initial.common.tractions.t_s_Pa;
+  loads.p_Pa = initial.common.tractions.p_s_Pa;
+  p.t_Pa = loads.t_Pa;
+  p.p_Pa = loads.p_Pa;
+  add_friction(config, friction, initial.common, p, loads);
+  add_trigger(config, initial, loads.t_Pa);
+  auto response = is_held(config) ? response_of_sample(config, initial)
+                                  : fracture::response_of_half_spaces(bodies, p.x_m);
+  p.bodies = is_held(config) ? "the sample, its far edges held" : "half-spaces";
+  // To the side to which the load drives the plate.
+  double force = 0;
+  for (const double t_Pa : loads.t_Pa) force += t_Pa;
+  if (force < 0) {
+    for (double& t_Pa : loads.t_Pa) t_Pa = -t_Pa;
+    response.p_per_slip *= -1;
+  }
+  const auto patch = first_crack(config, initial, p, x_m);
+  p.of_fronts = fracture::predict(response, loads, p.fracture_energy_J_per_m2, patch.first, patch.last,
+                                  fracture::SpeedLaw(bodies));
+  if (!is_held(config) && (config.plate.sides == mesh::Sides::free || config.plate.top == mesh::Top::free))
+    p.notes.emplace_back("free edges are left out: the crack is one between half-spaces");
+  if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
+    p.notes.emplace_back("absorbing sides count as free ones");
+  if (config.regularisation.relaxed != interface::Relaxed::initial_pressure && !stability::are_alike(bodies))
+    p.notes.emplace_back("slip changes the pressure, which speeds leave out");
+  return p;
+}
+
+}  // namespace slipfront::run

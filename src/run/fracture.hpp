@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fracture/prediction.hpp"
+#include "input/case.hpp"
+
+namespace slipfront::run {
+
+/// What friction does behind a tip, where it is known otherwise than by the law: from a run, or from
+/// measurements.
+struct TipFriction {
+  std::vector<double> x_m;  ///< ascending; values between are interpolated, beyond the ends constant
+  std::vector<double> fracture_energy_J_per_m2, residual_coefficient;  ///< [places], or empty: of the law
+};
+
+/// What a case lets expect of its fronts as cracks.
+struct FracturePrediction {
+  fracture::Prediction of_fronts;
+  std::vector<double> x_m, t_Pa, p_Pa, fracture_energy_J_per_m2,
+      residual_coefficient;  ///< [nodes] before the event
+  double element_size_m = 0;
+  std::string bodies;              ///< whose static response it is, in words
+  std::vector<std::string> notes;  ///< what it leaves out, a line each
+};
+
+/// Solves the statics of the case's sample, with elements large enough for some hundreds of nodes on the
+/// interface.
+/// @param friction  instead of the law's
+/// @param x_m       where the crack begins, instead of at the case's trigger
+/// @throws UserError where the law has no fracture energy of its own and none is given
+FracturePrediction predict_fronts(const input::Case& config, const TipFriction& friction = {},
+                                  const std::optional<double>& x_m = {});
+
+}  // namespace slipfront::run

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fracture/static_crack.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace slipfront::fracture {
+namespace {
+
+solid::Material material(double nu = 0.33) {
+  solid::Material m;
+  m.youngs_modulus_Pa = 3e9;
+  m.poissons_ratio = nu;
+  return m;
+}
+
+std::vector<double> places(std::size_t n, double h_m) {
+  std::vector<double> x_m;
+  for (std::size_t k = 0; k < n; ++k) x_m.push_back(static_cast<double>(k) * h_m);
+  return x_m;
+}
+
+CrackLoads uniform(std::size_t n, double t_Pa, double p_Pa, double coefficient) {
+  return {std::vector(n, t_Pa), std::vector(n, p_Pa), std::vector(n, coefficient), std::vector(n, 0.0)};
+}
+
+TEST(StaticCrack, InteriorCrackBetweenHalfSpaces) {
+  // G = drop^2 pi a/E' between alike bodies; a is half the length.
+  const auto m = material();
+  const double h = 1e-3, drop = 2e5;
+  const std::size_t n = 401;
+  const auto response = response_of_half_spaces(Bodies(m, m), places(n, h));
+  const auto loads = uniform(n, 1e6, 2e6, 0.4);
+  StaticCrack crack(response, loads);
+  crack.begin(200);
+  for (int k = 1; k <= 160; ++k) {
+    const double G = drop * drop * std::numbers::pi * k * h / m.youngs_modulus_Pa;
+    EXPECT_NEAR(crack.energy_release_rate_J_per_m2(1), G, 1e-9 * G);
+    EXPECT_NEAR(crack.energy_release_rate_J_per_m2(-1), G, 1e-9 * G);
+    crack.release(1);
+    crack.release(-1);
+  }
+}
+
+TEST(StaticCrack, IsThatOfTheWholeEquations) {
+  // Slip and energy by a dense solution of each crack, with pressure that slip changes.
+  const auto m = material();
+  const std::size_t n = 41;
+  const auto response = response_of_half_spaces(Bodies(m), places(n, 1e-3));
+  auto loads = uniform(n, 1e6, 2e6, 0.35);
+  for (std::size_t k = 0; k < n; ++k) loads.t_Pa[k] += 1e3 * static_cast<double>(k * k % 7);
+  StaticCrack crack(response, loads);
+  crack.begin(20);
+  std::vector<Eigen::Index> nodes = {20};
+  for (const int side : {1, 1, -1, 1, -1, -1, -1, 1}) {
+    const auto next = crack.next(side);
+    const auto solve = [&](const std::vector<Eigen::Index>& of) {
+      Eigen::MatrixXd A(std::ssize(of), std::ssize(of));
+      Eigen::VectorXd r(std::ssize(of));
+      for (Eigen::Index i = 0; i < r.size(); ++i) {
+        for (Eigen::Index j = 0; j < r.size(); ++j)
+          A(i, j) = -response.t_per_slip(of[i], of[j]) + 0.35 * response.p_per_slip(of[i], of[j]);
+        r(i) = loads.t_Pa[of[i]] - 0.35 * loads.p_Pa[of[i]];
+      }
+      return Eigen::VectorXd(A.partialPivLu().solve(r));
+    };
+    const auto before = solve(nodes);
+    double t_Pa = loads.t_Pa[next], p_Pa = loads.p_Pa[next];
+    for (Eigen::Index j = 0; j < before.size(); ++j) {
+      t_Pa += response.t_per_slip(next, nodes[j]) * before(j);
+      p_Pa += response.p_per_slip(next, nodes[j]) * before(j);
+    }
+    nodes.push_back(next);
+    const double slip_m = solve(nodes)(before.size());
+    const double expected = 0.5 * (t_Pa - 0.35 * p_Pa) * slip_m;
+    EXPECT_NEAR(crack.energy_release_rate_J_per_m2(side), expected, 1e-10 * expected);
+    crack.release(side);
+  }
+}
+
+TEST(StaticCrack, NoEnergyWithoutDropAndNoneBeyondTheEnds) {
+  const auto m = material();
+  const std::size_t n = 5;
+  const auto response = response_of_half_spaces(Bodies(m, m), places(n, 1e-3));
+  const auto loads = uniform(n, 0.7e6, 2e6, 0.4);
+  StaticCrack crack(response, loads);
+  crack.begin(1);
+  EXPECT_EQ(crack.energy_release_rate_J_per_m2(1), 0);
+  crack.release(-1);
+  EXPECT_EQ(crack.next(-1), -1);
+  EXPECT_TRUE(std::isnan(crack.energy_release_rate_J_per_m2(-1)));
+}
+
+}  // namespace
+}  // namespace slipfront::fracture

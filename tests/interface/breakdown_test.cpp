@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interface/breakdown.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/exponential_slip_weakening.hpp"
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/velocity_weakening.hpp"
+
+namespace slipfront::interface {
+namespace {
+
+constexpr double dt_s = 1e-9, p_Pa = 5e6;
+
+/// A node under a pressure that a function of the slip gives, at a slip rate that another one gives.
+struct Slipping {
+  ContactModel model;
+  Interface state = Interface(3);
+  double v_m_per_s = 0;
+
+  explicit Slipping(const FrictionLaw& law) : model{law} {
+    state.p_Pa.assign(3, p_Pa);
+    start_contact(model, state);
+    for (const auto& [values, value] :
+         {std::pair(&state.mass_per_length_kg_m2, 1e-2), std::pair(&state.tangential_mass_ratio, 1.0)})
+      values->assign(3, value);
+  }
+  /// Updates node 1 alone: the node is driven so that it has the rate afterwards.
+  template <class Coefficient>
+  void go(double rate_m_per_s, Coefficient&& coefficient, double pressure_Pa = p_Pa) {
+    const bool begins = state.slipping[1] == 0;
+    const double mean = 0.5 * (v_m_per_s + rate_m_per_s);
+    const double mu = coefficient(mean, state.slip_m[1]);
+    state.strength_Pa[1] =
+        begins ? coefficient(0.0, 0.0) * pressure_Pa + model.law.cohesion_Pa() : mu * pressure_Pa;
+    state.t_Pa[1] = mu * pressure_Pa + model.law.cohesion_Pa();
+    state.p_Pa[1] = pressure_Pa;
+    state.slipping[1] = 1;
+    state.v_x_m_per_s[1] = rate_m_per_s;
+    const std::vector<double> before(3, v_m_per_s);
+    follow_breakdown(model, dt_s, before, begins, state);
+    state.slip_m[1] += dt_s * mean;
+    v_m_per_s = rate_m_per_s;
+  }
+  record::Breakdown found() const { return breakdown_of(model, state, 0, 3); }
+};
+
+/// A rate that rises and falls again, as behind a tip. @param n  updates
+template <class Coefficient>
+Slipping passed(const FrictionLaw& law, Coefficient&& coefficient, int n = 20000) {
+  Slipping node(law);
+  for (int k = 1; k <= n; ++k) node.go(2 * std::sqrt(k / 100.0) / (1 + k / 100.0), coefficient);
+  return node;
+}
+
+TEST(Breakdown, LinearSlipWeakening) {
+  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
+  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
+  const auto found = passed(law, mu).found();
+  EXPECT_NEAR(found.work_J_per_m2[1], 0.5 * 0.2 * p_Pa * 2e-6, 1e-3);
+  EXPECT_NEAR(found.distance_m[1], 2e-6, 2e-9);
+  EXPECT_DOUBLE_EQ(found.peak_t_Pa[1], 0.6 * p_Pa);
+  EXPECT_DOUBLE_EQ(found.residual_t_Pa[1], 0.4 * p_Pa);
+  EXPECT_DOUBLE_EQ(found.residual_coefficient[1], 0.4);
+  EXPECT_EQ(found.complete[1], 1);
+  EXPECT_TRUE(std::isnan(found.work_J_per_m2[0]));
+  EXPECT_EQ(found.complete[0], 0);
+}
+
+TEST(Breakdown, WithCohesion) {
+  SlipWeakening weakening{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
+  FrictionLaw law(weakening);
+  law.parameter("cohesion_Pa") = 1e6;
+  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
+  Slipping node(law);
+  for (int k = 1; k <= 10000; ++k) {
+    node.go(0.5, mu);
+  }
+  EXPECT_DOUBLE_EQ(node.found().peak_t_Pa[1], 0.6 * p_Pa + 1e6);
+  EXPECT_NEAR(node.found().work_J_per_m2[1], 1.0, 1e-3);
+  EXPECT_NEAR(node.found().residual_coefficient[1], 0.4, 1e-12);
+}
+
+TEST(Breakdown, PressureThatFallsIsNoBreakdown) {
+  // The residual traction follows the pressure: what is lost at mu_k is heat.
+  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
+  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
+  Slipping node(law);
+  for (int k = 1; k <= 20000; ++k) node.go(0.5, mu, k < 8000 ? p_Pa : 0.5 * p_Pa);
+  EXPECT_NEAR(node.found().work_J_per_m2[1], 1.0, 2e-3);
+}
+
+TEST(Breakdown, ExponentialWeakeningHasNoEndOfItsOwn) {
+  const ExponentialSlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 1e-6};
+  const auto mu = [](double, double slip) { return 0.4 + 0.2 * std::exp(-slip / 1e-6); };
+  const auto found = passed(law, mu, 100000).found();
+  EXPECT_NEAR(found.work_J_per_m2[1], 0.2 * p_Pa * 1e-6, 5e-3);
+  EXPECT_EQ(found.complete[1], 1);
+}
+
+TEST(Breakdown, OfRateWeakeningEndsWhereTheRateIsLargest) {
+  const VelocityWeakening law;
+  const auto mu = [](double speed, double) { return 0.4 + 0.2 / (1 + speed); };
+  const auto found = passed(law, mu).found();
+  EXPECT_NEAR(found.residual_coefficient[1], 0.4 + 0.2 / (1 + 1.0), 1e-4);  // at 1 m/s, to 0.1 % of the fall
+  EXPECT_EQ(found.complete[1], 1);
+  EXPECT_GT(found.work_J_per_m2[1], 0);
+}
+
+TEST(Breakdown, WithoutAFallThereIsNone) {
+  const auto found = passed(Coulomb{}, [](double, double) { return 0.5; }).found();
+  EXPECT_NEAR(found.work_J_per_m2[1], 0, 1e-9);
+  EXPECT_TRUE(std::isnan(found.distance_m[1]));
+  EXPECT_EQ(found.complete[1], 0);
+}
+
+TEST(Breakdown, UnderWayIsNotComplete) {
+  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
+  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
+  Slipping node(law);
+  for (int k = 1; k <= 1000; ++k) node.go(1, mu);
+  EXPECT_EQ(node.found().complete[1], 0);
+  EXPECT_LT(node.found().work_J_per_m2[1], 0.5);
+}
+
+TEST(Breakdown, OpeningEndsIt) {
+  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
+  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
+  Slipping node(law);
+  for (int k = 1; k <= 1000; ++k) node.go(1, mu);
+  const double work = node.found().work_J_per_m2[1];
+  node.go(1, mu, 0);
+  node.go(1, mu);
+  EXPECT_EQ(node.found().work_J_per_m2[1], work);
+}
+
+}  // namespace
+}  // namespace slipfront::interface
