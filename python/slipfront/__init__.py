@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from slipfront.errors import WriteError as WriteError
     from slipfront.files import DataError as DataError
     from slipfront.fracture import predict_fronts as predict_fronts
+    from slipfront.gauges import Gauge as Gauge
+    from slipfront.gauges import compare_gauges as compare_gauges
+    from slipfront.gauges import gauges_of as gauges_of
+    from slipfront.gauges import read_gauges as read_gauges
     from slipfront.material import stable_step_s as stable_step_s
     from slipfront.material import wave_speeds as wave_speeds
     from slipfront.material import well_posedness as well_posedness
@@ -56,6 +60,10 @@ if TYPE_CHECKING:
     from slipfront.running import resume as resume
     from slipfront.running import run as run
     from slipfront.running import run_with_law as run_with_law
+    from slipfront.tip_fit import TipFit as TipFit
+    from slipfront.tip_fit import fit_tip as fit_tip
+    from slipfront.tip_fit import fit_tips as fit_tips
+    from slipfront.tip_fit import tip_field as tip_field
 
 # The module of each name.
 _PLACES = {
@@ -82,6 +90,10 @@ _PLACES = {
     "Error": "errors",
     "WriteError": "errors",
     "DataError": "files",
+    "Gauge": "gauges",
+    "compare_gauges": "gauges",
+    "gauges_of": "gauges",
+    "read_gauges": "gauges",
     "stable_step_s": "material",
     "wave_speeds": "material",
     "well_posedness": "material",
@@ -103,6 +115,10 @@ _PLACES = {
     "resume": "running",
     "run": "running",
     "run_with_law": "running",
+    "TipFit": "tip_fit",
+    "fit_tip": "tip_fit",
+    "fit_tips": "tip_fit",
+    "tip_field": "tip_fit",
 }
 
 __all__ = tuple(_PLACES)

@@ -14,6 +14,7 @@ from slipfront.program import program
 #: By their words, the module whose `main(arguments)` returns the exit code. It is imported when it is wanted.
 COMMANDS = {
     "fronts": "slipfront.fronts_command",
+    "gauges": "slipfront.gauges_command",
     "report": "slipfront.report.command",
     "study convergence": "slipfront.study.convergence",
     "study interface-step": "slipfront.study.interface_step",

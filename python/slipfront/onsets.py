@@ -45,13 +45,20 @@ def name_and_unit(column: str) -> tuple[str, str]:
     return found[1].strip().lower().replace(" ", "_"), WORDS.get(found[2].lower(), found[2])
 
 
-def columns_of(where: Any, names: list[str]) -> dict[str, tuple[str, float]]:
-    """The column of each quantity, and the factor to its SI unit."""
+def columns_of(
+    where: Any,
+    names: list[str],
+    quantities: dict[str, tuple[tuple[str, ...], dict[str, float]]] = QUANTITIES,
+    needed: tuple[str, ...] = ("x_m", "onset_s"),
+    wanted: str = WANTED,
+) -> dict[str, tuple[str, float]]:
+    """The column of each quantity, and the factor to its SI unit. What needs no unit has the unit ""."""
     chosen: dict[str, tuple[str, float]] = {}
     for name in names:
-        bare, unit = name_and_unit(name)
-        for quantity, (called, units) in QUANTITIES.items():
-            if bare not in called or unit not in units:
+        forms = dict([name_and_unit(name), (name.strip().lower(), "")])
+        for quantity, (called, units) in quantities.items():
+            unit = next((forms[bare] for bare in forms if bare in called and forms[bare] in units), None)
+            if unit is None:
                 continue
             if quantity in chosen:
                 raise DataError(
@@ -59,9 +66,9 @@ def columns_of(where: Any, names: list[str]) -> dict[str, tuple[str, float]]:
                     "rename one of them"
                 )
             chosen[quantity] = name, units[unit]
-    if "x_m" not in chosen or "onset_s" not in chosen:
+    if any(name not in chosen for name in needed):
         has = ", ".join(f"'{one_line(name)}'" for name in names) or "none"
-        raise DataError(f"{where}: has the columns {has}; wanted are {WANTED}")
+        raise DataError(f"{where}: has the columns {has}; wanted are {wanted}")
     return chosen
 
 

@@ -264,8 +264,7 @@ class OpenRun:
     @cached_property
     def probes(self) -> xr.Dataset | None:
         """probes.h5 over time_s and probe, by its name, with the places x_m and y_m: displacement, velocity,
-        strain, stress; with prescribed tractions the changes since the start (absolute_stress). None of a run
-        without probes."""
+        strain, stress; see absolute_stress. None of a run without probes."""
         file = self.folder / "probes.h5"
         if not belongs(file) or is_open(result_file(file)):
             return None
@@ -284,11 +283,10 @@ class OpenRun:
         return xr.Dataset(variables, coordinates, self._attributes())
 
     def absolute_stress(self, records: xr.Dataset) -> xr.Dataset:
-        """The whole stress of `probes` or `snapshots`, Pa, positive in tension. The records hold it where
-        statics found the state before the event. With prescribed tractions they hold the change since, and
-        the uniform state of run.info["prestress"] is added: -p to stress_yy_Pa, t to stress_xy_Pa. NaN where
-        the tractions determine no state: stress_xx_Pa, stress_zz_Pa in plane strain, and all of tractions
-        that vary along x. Raises DataError where the records have no stress."""
+        """The whole stress of `probes` or `snapshots`, Pa, positive in tension: as it is recorded, but NaN
+        where prescribed tractions determine no state before the event: stress_xx_Pa, stress_zz_Pa in plane
+        strain, and all of tractions that vary along x. To files of versions that recorded the change the
+        state of run.info["prestress"] is added. Raises DataError where the records have no stress."""
         before = self._place.prestress(self.case)
         names = [name for name in STRESSES if name in records]
         require(bool(names), self.folder, "these records have no stress")
@@ -297,6 +295,8 @@ class OpenRun:
             attrs = records[name].attrs
             long_name = str(attrs.get("long_name", "")).removesuffix(CHANGE)
             added = 0.0 if before is None else before[name]
+            if self._place.records_prestress:
+                added *= 0.0  # is there; what is not known stays NaN
             whole[name] = (records[name] + added).assign_attrs(
                 attrs | {"long_name": f"{long_name}, absolute"}
             )
@@ -319,8 +319,9 @@ class OpenRun:
     def _of_motion(self, found: h5py.Dataset, name: str) -> dict[str, str]:
         """Attributes of what counts from the state before the event, where that is not the unloaded one."""
         attrs = attributes_of(found, name)
-        counts = name.startswith(("u_", "displacement", "strain", "stress"))
-        if counts and self._place.prestress(self.case) is not None:
+        of_state = () if self._place.records_prestress else ("strain", "stress")
+        changes = ("u_", "displacement", *of_state)
+        if name.startswith(changes) and self._place.prestress(self.case) is not None:
             attrs["long_name"] += CHANGE
         return attrs
 

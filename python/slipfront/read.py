@@ -203,8 +203,8 @@ class Place:
         return self.status in WITHOUT_END
 
     def prestress(self, case: dict[str, Any]) -> dict[str, float] | None:
-        """What recorded stress, a change with prescribed tractions, adds to, Pa by the names of the records;
-        NaN where they determine none. None where the records are the whole stress."""
+        """The state before the event that prescribed tractions leave out of displacements, Pa by the names of
+        the records; NaN where they determine none. None without prescribed tractions."""
         if entry(case, "loading", "method") != "prestress":
             return None
         told = self.info.get("prestress")  # there was none in older files
@@ -213,6 +213,11 @@ class Place:
         if entry(case, "material", "plane") == "stress":
             before["stress_zz_Pa"] = 0.0
         return {name: float(value) if is_number(value) else np.nan for name, value in before.items()}
+
+    @property
+    def records_prestress(self) -> bool:
+        """Whether recorded strain and stress hold it; else they are the change from it, as in older files."""
+        return entry(self.info, "prestress", "recorded") is True
 
     def mark(self, last_s: float) -> str:
         """How a run ended that did not come to its end, for titles; empty for a complete one."""

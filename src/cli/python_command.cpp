@@ -32,6 +32,8 @@ constexpr std::array python_commands = {
     PythonCommand{nullptr, "report",
                   "Write a page (HTML) to look at a run, a study or a reproduction in a browser"},
     PythonCommand{nullptr, "fronts", "Find fronts in a history of slip along an interface, from any source"},
+    PythonCommand{nullptr, "gauges",
+                  "Fit the field of a front's tip to strain gauges, or compare them with a run"},
     PythonCommand{nullptr, "sweep", "Run a case over values of its keys, and compare"},
     PythonCommand{"study", "convergence",
                   "Front speeds over element size, interface step and damping, with their limits"},

@@ -48,7 +48,8 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, *output));
   list.push_back(std::make_unique<TipSlips>(state, sampling.history_interval_s));
   if (!stepper_.probes().empty())
-    list.push_back(std::make_unique<ProbeRows>(stepper_, sampling.probe_interval_s, *output));
+    list.push_back(
+        std::make_unique<ProbeRows>(stepper_, sampling.probe_interval_s, sampling.further_stress, *output));
   list.push_back(std::make_unique<EnergyRows>(start, sampling.energy_interval_s, step_s, time.end_s));
   list.push_back(std::make_unique<Snapshots>(sampling.snapshot_times_s, *output));
   list.push_back(std::make_unique<BlowUpMonitor>(stepper_, waves.c_L_m_per_s, time.precision, start));

@@ -18,6 +18,7 @@
 #include "record/breakdown.hpp"
 #include "record/record.hpp"
 #include "record/tip_slip.hpp"
+#include "solid/element.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::motion {
@@ -28,6 +29,7 @@ struct Sampling {
   double energy_interval_s = 20e-6;
   std::vector<double> snapshot_times_s;  ///< ascending
   double probe_interval_s = 0.5e-6;      ///< of the stepper's probes; one step where that is longer
+  std::optional<solid::UniformStress> further_stress = {};  ///< of the probes, that displacements leave out
 };
 
 /// A slip event as it was computed.

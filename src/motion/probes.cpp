@@ -87,10 +87,12 @@ std::vector<Probe> locate_probes(std::span<const record::ProbePlace> places,
 }
 
 ProbeRecorder::ProbeRecorder(std::vector<Probe> probes, double step_s, double interval_s,
-                             std::vector<double> before_m, std::vector<double> now_m)
+                             std::vector<double> before_m, std::vector<double> now_m,
+                             const std::optional<solid::UniformStress>& further)
     : probes_(std::move(probes)),
       step_s_(step_s),
       every_(interval_s),
+      further_(further),
       before_m_(std::move(before_m)),
       now_m_(std::move(now_m)) {
   SLIPFRONT_ASSERT(
@@ -145,9 +147,10 @@ void ProbeRecorder::append_row(double time_s, std::span<const double> after_m,
       v_x += weight * (after_m[at] - before_m_[at]) / (2 * step_s_);
       v_y += weight * (after_m[at + 1] - before_m_[at + 1]) / (2 * step_s_);
     }
-    const auto e = solid::strain(probe.shape, u_m, probe.material);
-    const auto s = solid::stress_Pa(e, probe.material);
     const double up = probe.body > 0 ? -1 : 1;  // y of a body that is described upside down
+    auto further = further_;
+    if (further) further->xy_Pa *= up, further->xy_Pa_per_s *= up;
+    const auto [e, s] = solid::strain_and_stress(probe.shape, u_m, probe.material, further, time_s);
     const std::array<double, record::probe_fields.size()> values = {
         u_x, up * u_y, v_x, up * v_y, e.xx, e.yy, e.zz, up * e.xy, s.xx, s.yy, s.zz, up * s.xy};
     for (std::size_t f = 0; f < values.size(); ++f)

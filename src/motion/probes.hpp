@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -83,8 +84,9 @@ std::vector<double> values_at(std::span<const Probe> probes, FieldOf&& field_of)
 class ProbeRecorder {
  public:
   /// @param before_m, now_m  displacements a step before the first one and at it, see displacement_values
+  /// @param further  stress that the displacements leave out
   ProbeRecorder(std::vector<Probe> probes, double step_s, double interval_s, std::vector<double> before_m,
-                std::vector<double> now_m);
+                std::vector<double> now_m, const std::optional<solid::UniformStress>& further = {});
 
   /// Makes room for the steps from `first` + 1 to `first` + n.
   void expect(std::int64_t first, std::int64_t n);
@@ -108,6 +110,7 @@ class ProbeRecorder {
   std::vector<Probe> probes_;
   double step_s_;
   Every every_;
+  std::optional<solid::UniformStress> further_;
   std::vector<double> before_m_, now_m_;  ///< of the last two steps that were needed
   std::int64_t first_ = 0;
   std::vector<std::ptrdiff_t> place_;  ///< of the steps expected, in kept_m_; negative: not needed

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "solid/element.hpp"
 #include "solid/material.hpp"
 
 namespace slipfront::results {
@@ -25,6 +27,7 @@ struct CellsOfBody {
 struct SnapshotContents {
   std::vector<CellsOfBody> bodies;  ///< whose strain and stress are written; none for neither
   Origin origin = {};
+  std::optional<solid::UniformStress> further_stress = {};  ///< that the displacements leave out
 };
 
 }  // namespace slipfront::results

@@ -64,20 +64,16 @@ std::string cell_data(const TensorComponent& component) {
   return std::string("/VTKHDF/CellData/") + component.name;
 }
 
-struct StrainAndStress {
-  solid::PlaneTensor strain, stress_Pa;
-};
-
-StrainAndStress at_centre(const mesh::Mesh& mesh, const mesh::Cell& cell, const solid::Field& u_m,
-                          const solid::Material& material) {
+solid::StrainAndStress at_centre(const mesh::Mesh& mesh, const mesh::Cell& cell, const solid::Field& u_m,
+                                 const solid::Material& material,
+                                 const std::optional<solid::UniformStress>& further, double time_s) {
   std::array<double, 8> of_nodes{};
   for (std::size_t a = 0; a < 4; ++a) {
     of_nodes[2 * a] = u_m.x[cell[a]];
     of_nodes[2 * a + 1] = u_m.y[cell[a]];
   }
   const auto shape = solid::cell_shape(solid::cell_coordinates(mesh, cell), 0, 0);
-  const auto strain = solid::strain(shape, of_nodes, material);
-  return {strain, solid::stress_Pa(strain, material)};
+  return solid::strain_and_stress(shape, of_nodes, material, further, time_s);
 }
 
 constexpr std::uint8_t vtk_quad = 9;
@@ -140,8 +136,9 @@ void for_cells(const mesh::Slab& slab, F&& f) {
 
 /// Strain and stress of the cells. @param u_m  of the slab's nodes @param first_row  of the snapshot
 template <class F>
-void for_tensors(const mesh::Slab& slab, std::span<const CellsOfBody> bodies, const solid::Field& u_m,
-                 std::size_t first_row, F&& f) {
+void for_tensors(const mesh::Slab& slab, const SnapshotContents& contents, const solid::Field& u_m,
+                 double time_s, std::size_t first_row, F&& f) {
+  const auto& bodies = contents.bodies;
   const auto all = components(bodies.front().material.plane);
   std::array<std::vector<double>, tensor_values_per_cell> values;
   std::size_t body = 0;
@@ -149,7 +146,8 @@ void for_tensors(const mesh::Slab& slab, std::span<const CellsOfBody> bodies, co
     for (auto& column : values) column.clear();
     for (std::size_t c = from; c < end; ++c) {
       while (slab.first_cell + c >= bodies[body].end) ++body;
-      const auto at = at_centre(slab.mesh, slab.mesh.cells[c], u_m, bodies[body].material);
+      const auto at = at_centre(slab.mesh, slab.mesh.cells[c], u_m, bodies[body].material,
+                                contents.further_stress, time_s);
       for (std::size_t k = 0; k < all.size(); ++k)
         values[k].push_back((all[k].is_stress ? at.stress_Pa : at.strain).*all[k].member);
     }
@@ -184,7 +182,7 @@ void for_share(const Writer& writer, int number, const mesh::Slabs& mesh, const 
       solid::Field u_m;  // cells reach into the next slab
       u_m.x = rows.read(k, 1 + slab.first_node, slab.mesh.x_m.size());
       u_m.y = rows.read(k, 1 + mesh.n_nodes + slab.first_node, slab.mesh.x_m.size());
-      for_tensors(slab, contents.bodies, u_m, k * mesh.n_cells, f);
+      for_tensors(slab, contents, u_m, rows.read(k, 0, 1).front(), k * mesh.n_cells, f);
     }
   });
 }

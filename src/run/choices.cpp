@@ -121,6 +121,13 @@ record::StaticState prescribed_tractions(const input::Case& config, const mesh::
   return state;
 }
 
+std::optional<solid::UniformStress> prescribed_stress(const input::Case& config) {
+  const input::Prestress& prestress = config.prestress;
+  if (!is_prestressed(config) || !prestress.file.empty() || !prestress.t_Pa) return std::nullopt;
+  return solid::UniformStress{-prestress.p_Pa, *prestress.t_Pa, -prestress.p_rate_Pa_per_s,
+                              prestress.t_rate_Pa_per_s};
+}
+
 std::vector<double> interface_x_m(const mesh::Mesh& mesh) {
   std::vector<double> x_m;
   for (const auto n : mesh.interface_nodes) x_m.push_back(mesh.x_m[n]);

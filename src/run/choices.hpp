@@ -10,6 +10,7 @@
 #include "motion/settings.hpp"
 #include "motion/stepper.hpp"
 #include "record/record.hpp"
+#include "solid/element.hpp"
 #include "stability/modes.hpp"
 #include "statics/settings.hpp"
 
@@ -33,6 +34,10 @@ double fastest_speed_m_per_s(const input::Case& config);
 
 /// The materials on both sides of the interface.
 stability::Bodies bodies_of(const input::Case& config);
+
+/// The state of the bulk that carries prescribed tractions, which displacements leave out. None of tractions
+/// that vary along x: they do not determine it.
+std::optional<solid::UniformStress> prescribed_stress(const input::Case& config);
 
 /// stability::damping_of_grid_waves_s rounded up to three digits, as notes print it.
 double advised_damping_s(const input::Case& config);

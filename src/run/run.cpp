@@ -181,7 +181,8 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
       .loads_settle_s = loads_settle_s(config),
       .time = config.time,
       .sampling = {config.output.history_interval_s, config.output.energy_interval_s,
-                   snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s},
+                   snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s,
+                   prescribed_stress(config)},
       .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m)};
   return {stepper, setup, monitor, output, std::move(more)};
 }

@@ -158,11 +158,13 @@ Json rupture_json(const RuptureOutlook& rupture) {
           {"doubts", rupture.doubts}};
 }
 
-/// What recorded stress under prescribed tractions, a change, adds to: the uniform state of the bulk that
-/// carries them, null where they do not determine it.
-Json prestress_json(const input::Prestress& prestress) {
+/// The uniform state of the bulk that carries prescribed tractions, null where they do not determine it, and
+/// whether recorded strain and stress hold it; else they are the change from it.
+Json prestress_json(const input::Case& config) {
+  const input::Prestress& prestress = config.prestress;
   const bool is_uniform = prestress.file.empty();
-  return {{"stress_xx_Pa", Json()},
+  return {{"recorded", prescribed_stress(config).has_value()},
+          {"stress_xx_Pa", Json()},
           {"stress_yy_Pa", is_uniform ? Json(-prestress.p_Pa) : Json()},
           {"stress_xy_Pa", is_uniform ? optional_json(prestress.t_Pa) : Json()}};
 }
@@ -248,7 +250,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
   json["friction_work"] = friction_work_json(result, initial);
-  if (initial.prescribed) json["prestress"] = prestress_json(result.config.prestress);
+  if (initial.prescribed) json["prestress"] = prestress_json(result.config);
   if (result.shared) json["processes"] = processes_json(*result.shared);
   if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;
   if (input::has_base_body(result.config))
@@ -306,7 +308,7 @@ results::RunFiles run_files(const input::Case& config, const InitialState& initi
 }
 
 results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh) {
-  results::SnapshotContents contents{{}, origin_of(config)};
+  results::SnapshotContents contents{{}, origin_of(config), prescribed_stress(config)};
   if (!config.output.snapshot_stress) return contents;
   contents.bodies.push_back({mesh.n_plate_cells, config.material});
   if (input::has_base_body(config))

@@ -100,6 +100,32 @@ PlaneTensor stress_Pa(const PlaneTensor& e, const Material& material) {
   return s;
 }
 
+PlaneTensor strain_of(const PlaneTensor& s, const Material& material) {
+  const double P = longitudinal_modulus_Pa(material), G = shear_modulus_Pa(material);
+  const double E = 4 * G * (P - G);  // times P: the uniaxial modulus of the plane
+  PlaneTensor e{(P * s.xx - (P - 2 * G) * s.yy) / E, (P * s.yy - (P - 2 * G) * s.xx) / E, 0, s.xy / (2 * G)};
+  if (material.plane == Plane::stress)
+    e.zz = -material.poissons_ratio / material.youngs_modulus_Pa * (s.xx + s.yy);
+  return e;
+}
+
+StrainAndStress strain_and_stress(const CellShape& shape, const std::array<double, 8>& u_m,
+                                  const Material& material, const std::optional<UniformStress>& further,
+                                  double time_s) {
+  PlaneTensor e = strain(shape, u_m, material);
+  PlaneTensor s = stress_Pa(e, material);
+  if (!further) return {e, s};
+  PlaneTensor of_all{0, further->yy_Pa + time_s * further->yy_Pa_per_s, 0,
+                     further->xy_Pa + time_s * further->xy_Pa_per_s};
+  if (material.plane == Plane::strain) of_all.zz = material.poissons_ratio * of_all.yy;
+  const PlaneTensor strained = strain_of(of_all, material);
+  for (const auto component : {&PlaneTensor::xx, &PlaneTensor::yy, &PlaneTensor::zz, &PlaneTensor::xy}) {
+    e.*component += strained.*component;
+    s.*component += of_all.*component;
+  }
+  return {e, s};
+}
+
 CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   CellCoordinates c{};
   for (int a = 0; a < 4; ++a) {

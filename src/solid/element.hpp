@@ -48,6 +48,23 @@ PlaneTensor strain(const CellShape& shape, const std::array<double, 8>& u_m, con
 
 /// Elastic stress of a strain, Pa, positive in tension; zz is 0 in plane stress.
 PlaneTensor stress_Pa(const PlaneTensor& strain, const Material& material);
+/// The strain whose stress it is. The stress across the plane follows from the others.
+PlaneTensor strain_of(const PlaneTensor& stress_Pa, const Material& material);
+
+/// A uniform stress that displacements leave out, and that grows. Along x it is 0.
+struct UniformStress {
+  double yy_Pa = 0, xy_Pa = 0;  ///< at time 0
+  double yy_Pa_per_s = 0, xy_Pa_per_s = 0;
+};
+
+struct StrainAndStress {
+  PlaneTensor strain, stress_Pa;
+};
+
+/// Of the displacements of a cell's nodes, and of a uniform stress where there is one.
+StrainAndStress strain_and_stress(const CellShape& shape, const std::array<double, 8>& u_m,
+                                  const Material& material, const std::optional<UniformStress>& further,
+                                  double time_s);
 
 /// Stiffness of the bilinear four-node element with 2 x 2 Gauss points.
 /// @pre the cell is convex and counterclockwise.

@@ -104,6 +104,38 @@ TEST(Probes, AreExactInUniformStrain) {
   expect_linear({{graded, above_material}, {below, below_material}}, true);
 }
 
+TEST(Probes, HoldAStressThatDisplacementsLeaveOut) {
+  const auto above = small_plate(Corner::none), below = small_plate(Corner::none);
+  const std::vector<BodySource> bodies = {{above, above_material}, {below, below_material}};
+  const auto places = scattered(true);
+  const auto probes = locate_probes(places, bodies);
+  const auto u_m = displacements({}, probes, bodies);
+  const solid::UniformStress further{-4e6, 2e6, -1e10, 3e10};
+  const auto rows_of = [&](const std::optional<solid::UniformStress>& stress) {
+    ProbeRecorder recorder(probes, 1e-6, 1e-6, u_m, u_m, stress);
+    recorder.expect(0, 11);
+    for (int step = 1; step <= 11; ++step) std::ranges::copy(u_m, recorder.room_for(step));
+    record::ProbeRecord rows;
+    recorder.take_rows(11, rows);
+    return rows;
+  };
+  const auto with = rows_of(further), without = rows_of({});
+  for (std::size_t row = 0; row < with.time_s.size(); ++row)
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const std::size_t at = row * places.size() + k;
+      const double nu = probes[k].material.poissons_ratio, E = probes[k].material.youngs_modulus_Pa;
+      const double yy = -4e6 - 1e10 * with.time_s[row], xy = 2e6 + 3e10 * with.time_s[row], size = 1e-2;
+      EXPECT_NEAR(with.stress_yy_Pa[at] - without.stress_yy_Pa[at], yy, 1e-6);
+      EXPECT_NEAR(with.stress_xy_Pa[at] - without.stress_xy_Pa[at], xy, 1e-6);
+      EXPECT_EQ(with.stress_xx_Pa[at], without.stress_xx_Pa[at]);
+      EXPECT_NEAR(with.strain_xx[at] - without.strain_xx[at], -nu * yy / E, 1e-12 * size);
+      EXPECT_NEAR(with.strain_yy[at] - without.strain_yy[at], yy / E, 1e-12 * size);
+      EXPECT_NEAR(with.strain_zz[at] - without.strain_zz[at], -nu * yy / E, 1e-12 * size);
+      EXPECT_NEAR(with.strain_xy[at] - without.strain_xy[at], (1 + nu) * xy / E, 1e-12 * size);
+      EXPECT_EQ(with.u_y_m[at], without.u_y_m[at]);
+    }
+}
+
 TEST(Probes, LieOnSidesAndCornersOfTheirBody) {
   const auto mesh = small_plate(Corner::none, 0, mesh::Sides::periodic);
   const std::vector<ProbePlace> places = {{"a", 0, 0}, {"b", 0.048, 0.036}, {"c", 0.0475, 0.001}};

@@ -168,7 +168,9 @@ def test_the_sample_with_a_held_edge():
     assert held.attrs["bodies"] == "the sample, its far edges held"
     open_ = slipfront.predict_fronts(CASE)
     # Held edges take what the crack would release beyond them: it is twice as long as a body is high.
-    at = [data.isel(point=(data.direction == 1).to_numpy()) for data in (held, slipfront.predict_fronts(CASE))]
+    at = [
+        data.isel(point=(data.direction == 1).to_numpy()) for data in (held, slipfront.predict_fronts(CASE))
+    ]
     G_held, G_open = (np.interp(0.25, data.x_m, data.G_static_J_per_m2) for data in at)
     assert G_held < G_open
 

@@ -13,6 +13,7 @@ import pytest
 import slipfront
 from common import require_done, run_json, sets
 from package_cases import CASE, program, write_case
+from slipfront.read import Place
 from slipfront.report import setup
 from slipfront.report.command import main
 from slipfront.report.run import thin_run
@@ -60,7 +61,7 @@ trigger_ramp_s = 2e-6
 [time]
 end_s = 100e-6
 [output]
-snapshot_times_s = [50e-6]
+snapshot_times_s = [0.0, 50e-6]
 [probes]
 x_m = [0.075, 0.0765]
 y_m = [0.0, -0.0015]
@@ -115,21 +116,37 @@ def first_row(part):
 
 
 def test_the_prestress_is_told_and_added(pair):
-    assert run_json(pair)["prestress"] == {"stress_xx_Pa": None, "stress_yy_Pa": -P_PA, "stress_xy_Pa": T_PA}
+    told = {"recorded": True, "stress_xx_Pa": None, "stress_yy_Pa": -P_PA, "stress_xy_Pa": T_PA}
+    assert run_json(pair)["prestress"] == told
     run = slipfront.open(pair)
     probes, whole = run.probes, run.absolute_stress(run.probes)
-    assert (probes.stress_yy_Pa[0] == 0).all() and (probes.stress_xy_Pa[0] == 0).all()
-    assert (whole.stress_yy_Pa[0] == -P_PA).all() and (whole.stress_xy_Pa[0] == T_PA).all()
-    np.testing.assert_array_equal(whole.stress_xy_Pa - T_PA, probes.stress_xy_Pa + T_PA - T_PA)
+    assert (probes.stress_yy_Pa[0] == -P_PA).all() and (probes.stress_xy_Pa[0] == T_PA).all()
+    assert (probes.stress_xx_Pa[0] == 0).all()
+    # Hooke's law of plane stress, of the plate and of the base.
+    E, nu = np.array([2.4e9, 4e9]), np.array([0.38, 0.35])
+    for name, strain in (("xx", nu * P_PA / E), ("yy", -P_PA / E), ("xy", (1 + nu) * T_PA / E)):
+        np.testing.assert_allclose(probes[f"strain_{name}"][0], strain, rtol=1e-12)
+    np.testing.assert_array_equal(whole.stress_xy_Pa, probes.stress_xy_Pa)
+    np.testing.assert_array_equal(whole.stress_yy_Pa, probes.stress_yy_Pa)
     assert np.isnan(whole.stress_xx_Pa).all() and (whole.stress_zz_Pa == 0).all()  # plane stress
-    assert probes.stress_yy_Pa.attrs["long_name"].endswith("change since the start")
-    assert "change" not in probes.v_x_m_per_s.attrs["long_name"]
+    assert probes.u_x_m.attrs["long_name"].endswith("change since the start")
+    assert "change" not in probes.stress_yy_Pa.attrs["long_name"]
     assert whole.stress_yy_Pa.attrs["long_name"].endswith("absolute")
     cells = run.snapshots
-    assert cells.stress_yy_Pa.sizes == {"time_s": 1, "cell": 50 * 30}
-    np.testing.assert_array_equal(run.absolute_stress(cells).stress_yy_Pa, cells.stress_yy_Pa - P_PA)
+    assert cells.stress_yy_Pa.sizes == {"time_s": 2, "cell": 50 * 30}
+    assert (cells.stress_yy_Pa[0] == -P_PA).all() and (cells.stress_xy_Pa[0] == T_PA).all()
+    assert set(np.unique(cells.strain_yy[0])) == set(probes.strain_yy[0].values)
+    np.testing.assert_array_equal(run.absolute_stress(cells).stress_yy_Pa, cells.stress_yy_Pa)
     with pytest.raises(slipfront.DataError, match="no stress"):
         run.absolute_stress(run.history)
+
+
+def test_to_changes_of_older_files_the_state_before_is_added(pair, monkeypatch):
+    run = slipfront.open(pair)
+    monkeypatch.setattr(Place, "records_prestress", False)
+    probes, whole = run.probes, run.absolute_stress(run.probes)
+    np.testing.assert_array_equal(whole.stress_yy_Pa, probes.stress_yy_Pa - P_PA)
+    assert probes.stress_yy_Pa.attrs["long_name"].endswith("change since the start")
 
 
 def test_the_absolute_stress_at_the_interface_is_its_tractions(pair):
@@ -142,12 +159,12 @@ def test_the_absolute_stress_at_the_interface_is_its_tractions(pair):
     assert late.sum() > 10
     for stress, traction, sign in (("stress_yy_Pa", "p_Pa", -1), ("stress_xy_Pa", "t_Pa", 1)):
         np.testing.assert_allclose(whole[stress][late], sign * history[traction][late], atol=0.15 * P_PA)
-        changed = run.probes[stress].sel(probe="interface")[late]
-        assert (abs(changed - sign * history[traction][late]) > 0.3 * P_PA).all()
+        recorded = run.probes[stress].sel(probe="interface")
+        assert (abs(recorded[late] - recorded[0] - sign * history[traction][late]) > 0.3 * P_PA).all()
 
 
 def test_tractions_that_vary_leave_the_change_alone(table):
-    assert set(run_json(table)["prestress"].values()) == {None}
+    assert set(run_json(table)["prestress"].values()) == {False, None}
     run = slipfront.open(table)
     whole = run.absolute_stress(run.probes)
     assert all(np.isnan(whole[name]).all() for name in ("stress_xx_Pa", "stress_yy_Pa", "stress_xy_Pa"))
@@ -298,7 +315,7 @@ def test_what_does_not_vary_is_no_panel(pair, tilted):
 
 def test_constant_fields_are_sentences(tmp_path):
     """Nothing starts: the slip rate, the slip, p and t/p are the same everywhere."""
-    keys = sets("event.kind=none", "time.end_s=1e-5")
+    keys = sets("event.kind=none", "time.end_s=1e-5", "output.snapshot_times_s=[50e-6]")
     require_done(program("run", write_case(tmp_path, PAIR), "-q", "-o", "out", *keys, cwd=tmp_path))
     text, data = page_of(tmp_path / "out")
     assert data["fields"] == [] and data["panels"] == [] and 'id="space-time-plot"' not in text

@@ -115,6 +115,9 @@ TEST(Element, StressFollowsHookesLaw) {
     EXPECT_NEAR((s.zz - nu * (s.xx + s.yy)) / E, e.zz, 1e-13);
     EXPECT_NEAR(s.xy * (1 + nu) / E, e.xy, 1e-13);
     EXPECT_EQ(plane == Plane::stress ? s.zz : e.zz, 0);
+    const auto back = strain_of(s, m);
+    for (const auto c : {&PlaneTensor::xx, &PlaneTensor::yy, &PlaneTensor::zz, &PlaneTensor::xy})
+      EXPECT_NEAR(back.*c, e.*c, 1e-13);
   }
 }
 

@@ -49,6 +49,11 @@ def probes_of(place: Place) -> Probes | None:
         n = n_finite(*probes.fields.values())
         cut = {name: values[:n] for name, values in probes.fields.items()}
         probes = replace(probes, time_s=probes.time_s[:n], fields=cut)
+    if place.records_prestress:  # the page shows the change, and adds what is known of the state before
+        changed = {
+            n: v - v[:1] if n.startswith(("strain", "stress")) else v for n, v in probes.fields.items()
+        }
+        probes = replace(probes, fields=changed)
     for name, values in probes.fields.items():
         require(np.isfinite(values), file, f"a value of {name} is not finite")
     return probes if len(probes.time_s) > 0 and probes.names else None
@@ -130,7 +135,7 @@ def what_is_recorded(before: dict[str, float] | None) -> str:
             "and what has changed since. The button leaves the change since the start (Δ)."
         )
     change = (
-        "With prescribed tractions displacement, strain and stress are recorded as changes since the "
+        "With prescribed tractions displacement, strain and stress are shown as changes since the "
         "start of the "
         "event (Δ)"
     )

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Records of strain gauges with the fitted field of a tip, or with what a run computes there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from slipfront.figures import style
+from slipfront.figures.drawing import Drawing, plain
+from slipfront.gauges import COMPONENTS, Beside, Gauge
+from slipfront.opened import OpenRun
+from slipfront.tip_fit import TipFit
+
+MEASURED, MODEL = "0.55", "#d55e00"
+MOST_ROWS = 8
+AROUND = 1.5  # of the fit's duration that is shown
+
+
+def rows_of_panels(
+    gauges: list[Gauge], draw: Callable[[int, int, Axes, str, float], str], labels: tuple[str, str]
+) -> Drawing:
+    """A row per gauge, a column per component; draw(row, k, axes, part, factor) returns the row's title."""
+    parts = [part for part in COMPONENTS if any(part in gauge.values for gauge in gauges)]
+    n = min(len(gauges), MOST_ROWS)
+    figure = style.new_figure(style.PAGE_MM, 18 + 32 * n)
+    axes = figure.subplots(n, len(parts), squeeze=False)
+    for row in range(n):
+        gauge = gauges[row]
+        factor, unit = (1e6, "µε") if gauge.is_strain else (1e-6, "MPa")
+        sign = r"\varepsilon" if gauge.is_strain else r"\sigma"
+        for k, part in enumerate(parts):
+            ax = axes[row, k]
+            if part not in gauge.values:
+                ax.set_axis_off()
+                continue
+            title = draw(row, k, ax, part, factor)
+            ax.set_ylabel(rf"${sign}_{{{part}}}$ ({unit})")
+            if k == 0:
+                ax.set_title(title, loc="left")
+            if row == n - 1:
+                ax.set_xlabel("$t$ (µs)")
+    lines = [Line2D([], [], color=c, label=label) for c, label in zip((MEASURED, MODEL), labels, strict=True)]
+    style.legend_below(figure, lines, 2)
+    return Drawing("gauges", figure, "")
+
+
+def draw_fits(gauges: list[Gauge], fits: list[TipFit]) -> Drawing:
+    by_name = {gauge.name: gauge for gauge in gauges}
+
+    def draw(row: int, k: int, ax: Axes, part: str, factor: float) -> str:
+        fit = fits[row]
+        gauge = by_name[fit.gauge]
+        half_s = AROUND * max(fit.tip_s - fit.time_s[0], fit.time_s[-1] - fit.tip_s)
+        near = np.abs(gauge.time_s - fit.tip_s) <= half_s
+        ax.plot(1e6 * gauge.time_s[near], factor * np.asarray(gauge.values[part])[near], color=MEASURED)
+        gaps = np.flatnonzero(np.diff(fit.time_s) > 1.5 * np.median(np.diff(fit.time_s))) + 1
+        time_s, model = (np.insert(a, gaps, np.nan) for a in (fit.time_s, fit.fitted[part]))
+        ax.plot(1e6 * time_s, factor * model, color=MODEL)
+        ax.axvline(1e6 * fit.tip_s, **style.REFERENCE)
+        return (
+            f"{plain(fit.gauge)}, $x$ = {1e3 * fit.x_m:.4g} mm: $\\Gamma$ = {fit.Gamma_J_per_m2:.2f} ± "
+            f"{fit.Gamma_error_J_per_m2:.2f} J/m², $V$ = {fit.speed_m_per_s:.0f} m/s"
+        )
+
+    return rows_of_panels([by_name[fit.gauge] for fit in fits], draw, ("record", "field of a tip"))
+
+
+def draw_comparison(gauges: list[Gauge], run: OpenRun, shift_s: float) -> Drawing:
+    besides = [Beside(gauge, run) for gauge in gauges[:MOST_ROWS]]
+
+    def draw(row: int, k: int, ax: Axes, part: str, factor: float) -> str:
+        beside = besides[row]
+        i = beside.parts.index(part)
+        own_s = beside.time_s + shift_s
+        both = (own_s >= beside.run_s[0]) & (own_s <= beside.run_s[-1])
+        computed = np.interp(own_s[both], beside.run_s, beside.computed[i])
+        measured = beside.measured[i, both]
+        ax.plot(1e6 * own_s[both], factor * (measured - measured.mean()), color=MEASURED)
+        ax.plot(1e6 * own_s[both], factor * (computed - computed.mean()), color=MODEL)
+        misfit = ", ".join(
+            f"{p} {100 * m:.0f} %" for p, m in zip(beside.parts, beside.misfit(shift_s), strict=True)
+        )
+        return f"{plain(beside.gauge.name)}, $x$ = {1e3 * beside.gauge.x_m:.4g} mm: misfit {misfit}"
+
+    return rows_of_panels([b.gauge for b in besides], draw, ("record", "run"))

@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Records of strain gauges, of an experiment or a run's probes, and both beside each other. docs/gauges.md
+
+SI units; strain_xy is half the engineering shear strain, stress positive in tension; y counts from the
+interface."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from slipfront.errors import CaseError
+from slipfront.files import DataError, one_line, read_table
+from slipfront.given import instance, number
+from slipfront.onsets import LENGTHS, PRESSURES, QUANTITIES, TIMES, columns_of, in_si, name_and_unit
+from slipfront.opened import OpenRun
+from slipfront.read import require
+
+COMPONENTS = ("xx", "yy", "xy")
+STRAINS = {"": 1.0, "strain": 1.0, "ustrain": 1e-6, "microstrain": 1e-6, "mstrain": 1e-3}
+LEAST_SHARED = 0.5  # of the shorter of record and run
+GAUGE_NAMES = ("gauge", "name", "probe", "station")
+WANTED = (
+    "gauge, x, y and time with their units and strain_xx, strain_yy, strain_xy, three strain_ANGLE of a "
+    "rosette, or stress_xx_MPa and so on"
+)
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """What was recorded at a place: some of the components xx, yy, xy of strain, or of stress in Pa."""
+
+    name: str
+    x_m: float
+    y_m: float
+    time_s: np.ndarray
+    values: Mapping[str, np.ndarray]
+    is_strain: bool = True
+    smoothing_s: float = 0.0  # standard deviation of the filter that the record has passed
+
+    def __post_init__(self) -> None:
+        if not self.values or any(name not in COMPONENTS for name in self.values):
+            raise CaseError(
+                f"gauge {self.name}: its components are {list(self.values)}; take some of xx, yy, xy"
+            )
+        if not np.isfinite([self.x_m, self.y_m]).all() or self.y_m == 0:
+            raise CaseError(
+                f"gauge {self.name}: is at x = {self.x_m}, y = {self.y_m} m; y must be finite and not 0"
+            )
+        arrays = [np.asarray(a, float) for a in (self.time_s, *self.values.values())]
+        if any(a.shape != arrays[0].shape or a.ndim != 1 or not np.isfinite(a).all() for a in arrays):
+            raise CaseError(f"gauge {self.name}: times and values must be finite arrays of one length")
+        if len(arrays[0]) < 2 or not (np.diff(arrays[0]) > 0).all():
+            raise CaseError(f"gauge {self.name}: needs two times or more that ascend")
+
+    def prepared(
+        self,
+        *,
+        shift_s: float = 0.0,
+        zero_s: tuple[float, float] | None = None,
+        low_pass_Hz: float | None = None,
+        window_s: tuple[float, float] | None = None,
+    ) -> Gauge:
+        """The record with its clock moved by shift_s; less its mean over zero_s, which may begin at -inf;
+        filtered; cut to window_s. The last three count on the clock moved.
+
+        low_pass_Hz: of a Gaussian filter without phase, at which it lets 0.71 pass. Where times are uneven
+        the record is first interpolated to even ones. A fit passes its field through the same filter."""
+        time_s = np.asarray(self.time_s, float) + number(shift_s, "shift_s", finite=True)
+        values = {name: np.asarray(v, float) for name, v in self.values.items()}
+        smoothing_s = self.smoothing_s
+        if zero_s is not None:
+            inside = between(time_s, zero_s, f"gauge {self.name}: zero_s")
+            values = {name: v - v[inside].mean() for name, v in values.items()}
+        if low_pass_Hz is not None:
+            cut_off = number(low_pass_Hz, "low_pass_Hz", above=0, finite=True)
+            highest = 0.5 * (len(time_s) - 1) / (time_s[-1] - time_s[0])
+            if cut_off > highest:
+                raise CaseError(
+                    f"low_pass_Hz is {cut_off:g}; the record of {self.name} ends at {highest:.4g} Hz"
+                )
+            own_s = np.sqrt(np.log(2)) / (2 * np.pi * cut_off)
+            time_s, values = filtered(time_s, values, own_s)
+            smoothing_s = float(np.hypot(smoothing_s, own_s))
+        if window_s is not None:
+            inside = between(time_s, window_s, f"gauge {self.name}: window_s")
+            time_s, values = time_s[inside], {name: v[inside] for name, v in values.items()}
+        return replace(self, time_s=time_s, values=values, smoothing_s=smoothing_s)
+
+    def peak(self, part: str) -> float:
+        """The largest departure of a component from its median."""
+        values = np.asarray(self.values[part], float)
+        return float(np.abs(values - np.median(values)).max())
+
+
+def between(time_s: np.ndarray, ends_s: tuple[float, float], name: str) -> np.ndarray:
+    inside = (time_s >= ends_s[0]) & (time_s <= ends_s[1])
+    if np.count_nonzero(inside) < 2:
+        raise CaseError(
+            f"{name} is {ends_s[0]:g} to {ends_s[1]:g} s; the record goes from {time_s[0]:g} to "
+            f"{time_s[-1]:g} s"
+        )
+    return inside
+
+
+def gaussian(width: float) -> np.ndarray:
+    """Of a standard deviation in samples, an odd number of them."""
+    n = int(np.ceil(4 * width))
+    weights = np.exp(-0.5 * (np.arange(-n, n + 1) / max(width, 1e-9)) ** 2)
+    return weights / weights.sum()
+
+
+def smooth(values: np.ndarray, kernel: np.ndarray) -> np.ndarray:
+    return np.convolve(values, kernel, "valid")
+
+
+def filtered(
+    time_s: np.ndarray, values: Mapping[str, np.ndarray], width_s: float
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Even times, and the values there behind a Gaussian filter of this standard deviation."""
+    even_s = np.linspace(time_s[0], time_s[-1], len(time_s))
+    kernel = gaussian(width_s / (even_s[1] - even_s[0]))
+    even = {name: np.interp(even_s, time_s, v) for name, v in values.items()}
+    n = len(kernel) // 2
+    return even_s, {name: smooth(np.pad(v, n, "edge"), kernel) for name, v in even.items()}
+
+
+def from_arms(arms: Mapping[float, np.ndarray]) -> dict[str, np.ndarray]:
+    """Strain in the plane of three arms, by their angles from +x towards +y in degrees."""
+    angles = np.radians(list(arms))
+    c, s = np.cos(angles), np.sin(angles)
+    turned = np.array([c * c, s * s, 2 * s * c]).T
+    if abs(np.linalg.det(turned)) < 1e-3:
+        raise CaseError(f"arms at {', '.join(f'{a:g}' for a in arms)} degrees do not determine the strain")
+    return dict(zip(COMPONENTS, np.linalg.solve(turned, np.array(list(arms.values()))), strict=True))
+
+
+def quantities(names: list[str]) -> dict[str, tuple[tuple[str, ...], dict[str, float]]]:
+    """What columns may be called, as in onsets.QUANTITIES, and the arms of a rosette among them."""
+    found: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
+        "x_m": QUANTITIES["x_m"],
+        "y_m": (("y", "height"), LENGTHS),
+        "time_s": (("time", "t"), TIMES),
+        "gamma_xy": (("gamma_xy",), STRAINS),
+    }
+    for part in COMPONENTS:
+        found[f"strain_{part}"] = (f"strain_{part}", f"eps_{part}", f"epsilon_{part}"), STRAINS
+        found[f"stress_{part}"] = (f"stress_{part}", f"sigma_{part}"), PRESSURES
+    for name in names:
+        for bare in (name_and_unit(name)[0], name.strip().lower()):
+            if arm := re.fullmatch(r"(?:strain|eps|epsilon)_([+-]?\d+(?:\.\d+)?)(?:_?deg)?", bare):
+                found[f"arm {float(arm[1]):g}"] = (bare,), STRAINS
+    return found
+
+
+def components(where: Any, read: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], bool]:
+    """Those of strain or stress, and whether they are of strain."""
+    arms = {float(name[4:]): v for name, v in read.items() if name.startswith("arm ")}
+    strain = {part: read[f"strain_{part}"] for part in COMPONENTS if f"strain_{part}" in read}
+    stress = {part: read[f"stress_{part}"] for part in COMPONENTS if f"stress_{part}" in read}
+    if "gamma_xy" in read:
+        require("xy" not in strain, where, "has both gamma_xy and strain_xy: leave one out")
+        strain["xy"] = read["gamma_xy"] / 2
+    kinds = [kind for kind in (strain, stress, arms) if kind]
+    require(
+        len(kinds) == 1,
+        where,
+        f"has {'several kinds' if kinds else 'none'} of strain, stress, arms of a rosette",
+    )
+    if arms:
+        require(len(arms) == 3, where, f"a rosette has three arms, not {len(arms)}")
+        try:
+            return from_arms(arms), True
+        except CaseError as error:
+            raise DataError(f"{where}: {error}") from None
+    return strain or stress, bool(strain)
+
+
+def read_gauges(file: str | Path) -> list[Gauge]:
+    """The gauges of a CSV file (commas, or semicolons or tabs with decimal points or commas), a row per gauge
+    and time: columns gauge, x_mm, y_mm, time_us and strain_xx, strain_yy, strain_xy, gamma_xy = 2 strain_xy,
+    strain_-45, strain_90, strain_45 of the arms of a rosette, or stress_xx_MPa and so on. Units in the names,
+    as read_onsets has them; strain has none, or ustrain. Without the column gauge there is one.
+
+    Raises Error where the file is no such record."""
+    file = Path(file)
+    table = read_table(file, by_hand=True, separators=";\t,")
+    names = [name for name in table.header if name and name.strip().lower() not in GAUGE_NAMES]
+    chosen = columns_of(file, names, quantities(names), ("x_m", "y_m", "time_s"), WANTED)
+    read = {q: in_si(table.numbers(name), factor) for q, (name, factor) in chosen.items()}
+    for q, values in read.items():
+        require(np.isfinite(values), file, f"column '{one_line(chosen[q][0])}' has an empty cell")
+    of_all, is_strain = components(file, read)
+    column = next((name for name in table.header if name.strip().lower() in GAUGE_NAMES), None)
+    labels = np.array(table.texts(column) if column else ["gauge"] * len(table.rows), dtype=np.str_)
+    require(len(labels) > 0, file, "no rows")
+    made = []
+    for label in dict.fromkeys(labels.tolist()):
+        rows = labels == label
+        x_m, y_m, time_s = (read[q][rows] for q in ("x_m", "y_m", "time_s"))
+        if np.ptp(x_m) > 0 or np.ptp(y_m) > 0:
+            raise DataError(f"{file}: gauge '{one_line(label)}' is at more than one place")
+        try:
+            own = {part: v[rows] for part, v in of_all.items()}
+            made.append(Gauge(label, float(x_m[0]), float(y_m[0]), time_s, own, is_strain))
+        except CaseError as error:
+            raise DataError(f"{file}: {error}") from None
+    return made
+
+
+def gauges_of(run: OpenRun, *, stress: bool = False) -> list[Gauge]:
+    """A run's probes as gauges of strain, or of stress. Raises CaseError for a run without probes."""
+    probes = instance(run, OpenRun, "run").probes
+    if probes is None:
+        raise CaseError(f"{run.folder}: the run has no probes; give its case a table [probes]")
+    of = "stress_{}_Pa" if stress else "strain_{}"
+    found = []
+    for name in probes.probe.values:
+        at = probes.sel(probe=name)
+        values = {part: at[of.format(part)].to_numpy() for part in COMPONENTS}
+        found.append(
+            Gauge(str(name), float(at.x_m), float(at.y_m), probes.time_s.to_numpy(), values, not stress)
+        )
+    return found
+
+
+def at_place(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and a run's probes at a gauge's place [its components, times]: a probe there, or linear between
+    two of its height that are no farther apart than this; through the filter of the record."""
+    computed = [g for g in gauges_of(run, stress=not gauge.is_strain) if abs(g.y_m - gauge.y_m) < 1e-6]
+    parts = [part for part in COMPONENTS if part in gauge.values]
+    left = max((g for g in computed if g.x_m <= gauge.x_m + 1e-6), key=lambda g: g.x_m, default=None)
+    right = min((g for g in computed if g.x_m >= gauge.x_m - 1e-6), key=lambda g: g.x_m, default=None)
+    if left is None or right is None or right.x_m - left.x_m > abs(gauge.y_m) + 1e-6:
+        raise CaseError(
+            f"{run.folder}: no probe at gauge {gauge.name}, x = {gauge.x_m:g}, y = {gauge.y_m:g} m, nor two "
+            "of this height on both sides, no farther apart than it"
+        )
+    share = (
+        0.0
+        if right.x_m - left.x_m < 1e-9
+        else float(np.clip((gauge.x_m - left.x_m) / (right.x_m - left.x_m), 0, 1))
+    )
+    values = {part: (1 - share) * left.values[part] + share * right.values[part] for part in parts}
+    time_s = left.time_s
+    if gauge.smoothing_s > 0:
+        time_s, values = filtered(time_s, values, gauge.smoothing_s)
+    return time_s, np.array([values[part] for part in parts])
+
+
+class Beside:
+    """A gauge's record and what a run computes there."""
+
+    def __init__(self, gauge: Gauge, run: OpenRun) -> None:
+        self.gauge = gauge
+        self.parts = [part for part in COMPONENTS if part in gauge.values]
+        self.time_s = np.asarray(gauge.time_s, float)
+        self.measured = np.array([np.asarray(gauge.values[part], float) for part in self.parts])
+        self.run_s, self.computed = at_place(run, gauge)
+
+    def differences(self, shift_s: float) -> tuple[np.ndarray, np.ndarray]:
+        """Measured less computed where both are, on the run's clock = the gauge's + shift, and the record;
+        each about its own mean: gauges have no known zero. [components, times]"""
+        own_s = self.time_s + shift_s
+        both = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
+        shared_s = np.ptp(own_s[both]) if both.any() else 0.0
+        if shared_s < LEAST_SHARED * min(np.ptp(own_s), np.ptp(self.run_s)):
+            return np.empty((len(self.parts), 0)), np.empty((len(self.parts), 0))
+        record = self.measured[:, both]
+        computed = np.array([np.interp(own_s[both], self.run_s, row) for row in self.computed])
+        less = [a - a.mean(axis=1, keepdims=True) for a in (record - computed, record)]
+        return less[0], less[1]
+
+    def misfit(self, shift_s: float) -> np.ndarray:
+        """Of each component: rms of the difference over that of the record; infinite where they share few
+        times."""
+        difference, record = self.differences(shift_s)
+        if difference.shape[1] == 0:
+            return np.full(len(self.parts), np.inf)
+        return np.sqrt((difference**2).mean(axis=1) / np.maximum((record**2).mean(axis=1), 1e-300))
+
+
+def best_shift(besides: list[Beside], within_s: float) -> float:
+    """That of the least mean square of all misfits, from even shifts, then by thirds."""
+
+    def cost(shift_s: float) -> float:
+        return float(np.mean([np.mean(b.misfit(shift_s) ** 2) for b in besides]))
+
+    if within_s == 0:
+        return 0.0
+    step = min(float(np.median(np.diff(b.time_s))) for b in besides)
+    n = int(np.ceil(within_s / max(step, within_s / 500)))
+    shifts = np.linspace(-within_s, within_s, 2 * n + 1)
+    k = int(np.argmin([cost(s) for s in shifts]))
+    low, high = shifts[max(k - 1, 0)], shifts[min(k + 1, 2 * n)]
+    for _ in range(40):
+        a, b = low + (high - low) / 3, high - (high - low) / 3
+        low, high = (low, b) if cost(a) <= cost(b) else (a, high)
+    refined = 0.5 * (low + high)
+    return float(min((shifts[k], refined), key=cost))
+
+
+def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 50e-6) -> xr.Dataset:
+    """A run's probes beside records at the same places: what is left between them, and the shift of clocks.
+
+    within_s: the largest shift that is tried; 0: none. The probes pass the filter that `prepared` has put on
+    a record.
+
+    Returns a Dataset over gauge and component: misfit at the shift common to all, rms of the difference over
+    that of the record, both about their means, 0 where they agree; own_misfit at each gauge's own shift;
+    shift_s and own_shift_s: the run's clock less the record's. NaN for components that were not recorded.
+    Its attribute notes says what speaks against the comparison."""
+    besides = [Beside(gauge, run) for gauge in gauges]
+    if not besides:
+        raise CaseError("gauges is empty")
+    within = number(within_s, "within_s", least=0, finite=True)
+    shift = best_shift(besides, within)
+    if not np.isfinite([b.misfit(shift) for b in besides][0]).all():
+        raise CaseError(
+            f"records and run share less than half their times within {within:g} s of shift; shift the clock"
+        )
+    own = [best_shift([b], within) for b in besides]
+    misfits = {name: np.full((len(besides), 3), np.nan) for name in ("misfit", "own_misfit")}
+    for k, b in enumerate(besides):
+        at = [COMPONENTS.index(part) for part in b.parts]
+        misfits["misfit"][k, at], misfits["own_misfit"][k, at] = b.misfit(shift), b.misfit(own[k])
+    shifts = {"all together": shift} | {b.gauge.name: s for b, s in zip(besides, own, strict=True)}
+    ends = [name for name, s in shifts.items() if within > 0 and abs(s) > 0.999 * within]
+    notes = [f"shift at the end of its range: {', '.join(ends)}; widen it"] if ends else []
+    large = [b.gauge.name for k, b in enumerate(besides) if np.nanmax(misfits["misfit"][k]) > 1]
+    if large:
+        notes.append(f"the run explains nothing of a component of {', '.join(large)}")
+    return xr.Dataset(
+        {name: (("gauge", "component"), values) for name, values in misfits.items()}
+        | {"own_shift_s": ("gauge", own, {"units": "s"}), "shift_s": ((), shift, {"units": "s"})},
+        {"gauge": [b.gauge.name for b in besides], "component": list(COMPONENTS),
+         "x_m": ("gauge", [b.gauge.x_m for b in besides]), "y_m": ("gauge", [b.gauge.y_m for b in besides])},
+        {"notes": notes},
+    )  # fmt: skip

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`slipfront gauges RECORDS`: the tips of fronts in records of strain gauges, or a run beside them."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from slipfront import command
+from slipfront.errors import CaseError
+from slipfront.files import DataError, is_folder
+from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, gauges_of, read_gauges
+from slipfront.opened import OpenRun
+from slipfront.opened import open as open_run
+from slipfront.tip_fit import TipFit, fit_tips
+
+MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
+MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
+OF_FIT = (
+    "tip_s", "tip_error_s", "speed_m_per_s", "speed_error_m_per_s", "K_Pa_sqrt_m", "K_error_Pa_sqrt_m",
+    "Gamma_J_per_m2", "Gamma_error_J_per_m2",
+)  # fmt: skip
+#: Names in messages and their options.
+OPTIONS = (
+    "speed_m_per_s", "direction", "r_min_m", "r_max_m", "passages", "low_pass_Hz", "zero_s", "window_s",
+    "shift_s", "within_s",
+)  # fmt: skip
+
+
+def interval(text: str) -> tuple[float, float]:
+    first, _, last = text.partition(",")
+    return float(first or "-inf"), float(last or "inf")
+
+
+def speed(text: str) -> float | str:
+    return text if text == "gauges" else float(text)
+
+
+def shift(text: str) -> tuple[str | None, float]:
+    """Of [GAUGE=]S."""
+    name, equals, value = text.rpartition("=")
+    return (name if equals else None), float(value)
+
+
+def parse(arguments: list[str]) -> argparse.Namespace:
+    parser = command.Parser(
+        prog="slipfront gauges",
+        description="Fits the near-tip field of a moving front to records of strain gauges: fracture "
+        "energy, speed, time of the tip. RECORDS is a CSV file with columns gauge, x_mm, y_mm, time_us and "
+        "strain_xx, strain_yy, strain_xy or others that docs/gauges.md names, or a run's folder with probes.",
+    )
+    parser.add_argument("records", metavar="RECORDS", type=Path)
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="CSV table, a row per gauge and "
+                        "front, or of --compare per gauge and component")  # fmt: skip
+    parser.add_argument("--figure", metavar="FILE", type=Path, help="records and fits: .png, .pdf or .svg")
+    parser.add_argument("--compare", metavar="DIR", type=Path, help="put the probes of this run beside the "
+                        "records instead of a fit")  # fmt: skip
+    add = parser.add_argument_group("preparation of the records").add_argument
+    add("--shift-s", metavar="[GAUGE=]S", type=shift, action="append", default=[],
+        help="added to the times of all gauges, or of one; repeatable")  # fmt: skip
+    add("--zero-s", metavar="FROM,TO", type=interval, help="subtract the mean over these times")
+    add("--low-pass-hz", metavar="F", type=float, help="Gaussian filter without phase; fits allow for it")
+    add("--window-s", metavar="FROM,TO", type=interval, help="leave out all other times")
+    add("--stress", action="store_true", help="of a run: take stress, not strain")
+    add = parser.add_argument_group("fit").add_argument
+    add("--speed-m-per-s", metavar="V", type=speed, help="of the front, or `gauges`: by the times at "
+        "neighbouring gauges; by default fitted")  # fmt: skip
+    add("--direction", type=int, choices=(1, -1), help="of the front along x; by default the better one")
+    add("--r-min-m", metavar="R", type=float, default=0.0, help="leave out what is nearer to the tip")
+    add("--r-max-m", metavar="R", type=float, help="or farther; by default 5 heights of the gauge")
+    add("--no-step", action="store_true", help="no step of the residual stress")
+    add("--passages", metavar="N", type=int, default=1, help="of fronts at each gauge")
+    add = parser.add_argument_group("bodies, of a record; those of a run are its own").add_argument
+    for name in MATERIAL:
+        add(f"--{name.lower().replace('_', '-')}", dest=name, type=float)
+    add("--plane", choices=("stress", "strain"), help="by default stress")
+    add("--base", choices=("equal", "rigid"), help="an equal body, the default, or a rigid plane")
+    add = parser.add_argument_group("comparison").add_argument
+    add("--within-s", metavar="S", type=float, default=50e-6, help="largest shift of clocks that is tried")
+    return parser.parse_args(arguments)
+
+
+def bodies(options: argparse.Namespace, run: OpenRun | None) -> Any:
+    given = {
+        name: getattr(options, name) for name in (*MATERIAL, "plane") if getattr(options, name) is not None
+    }
+    if run is not None:
+        if given or options.base:
+            raise DataError("a run has its own bodies; leave out the material and --base")
+        return run
+    missing = [f"--{name.lower().replace('_', '-')}" for name in MATERIAL if name not in given]
+    if missing:
+        raise DataError(f"a record needs its bodies: {', '.join(missing)}")
+    plain = {name: value for name, value in given.items() if name != "plane"}
+    base = {"kind": "rigid"} if options.base == "rigid" else {"kind": "body", **plain}
+    return {"material": given, "base": base}
+
+
+def prepared(gauges: list[Gauge], options: argparse.Namespace) -> tuple[list[Gauge], list[str]]:
+    names = {gauge.name for gauge in gauges}
+    for name, _ in options.shift_s:
+        if name is not None and name not in names:
+            raise DataError(f"--shift-s names the gauge '{name}', which the records do not have")
+    made, notes = [], []
+    for gauge in gauges:
+        shift_s = sum(s for name, s in options.shift_s if name in (None, gauge.name))
+        own = {"zero_s": options.zero_s, "window_s": options.window_s}
+        plain = gauge.prepared(shift_s=shift_s, **own)
+        made.append(plain)
+        if options.low_pass_hz is not None:
+            made[-1] = gauge.prepared(shift_s=shift_s, low_pass_Hz=options.low_pass_hz, **own)
+            kept = [made[-1].peak(part) / plain.peak(part) for part in plain.values if plain.peak(part) > 0]
+            notes.append(
+                f"{gauge.name}: the filter leaves {100 * min(kept, default=1):.0f} % of the lowest-kept peak"
+            )
+    return made, notes
+
+
+def as_csv(rows: list[dict[str, Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({name: "" if value != value else value for name, value in row.items()})
+    return text.getvalue()
+
+
+def row_of(fit: TipFit, is_strain: bool) -> dict[str, Any]:
+    kind = "strain_{}" if is_strain else "stress_{}_Pa"
+    row: dict[str, Any] = {name: getattr(fit, name) for name in ("gauge", "x_m", "y_m", "direction", *OF_FIT)}
+    row |= {"residual": fit.residual_of_all}
+    for part in COMPONENTS:
+        row[f"residual_{part}"] = fit.residual.get(part, "")
+        row[f"offset_{kind.format(part)}"] = fit.offset.get(part, "")
+        row[f"step_{kind.format(part)}"] = fit.step.get(part, "")
+    return row | {"times": fit.n_times, "doubts": "; ".join(fit.doubts)}
+
+
+def with_error(value: float, error: float) -> str:
+    """An error that is not known is left out."""
+    return f"{value:.4g} +- {error:.2g}" if error == error else f"{value:.4g}"
+
+
+def line_of(fit: TipFit) -> str:
+    told = (
+        f"{fit.gauge}: front to {'+x' if fit.direction > 0 else '-x'} passes at "
+        f"{with_error(1e6 * fit.tip_s, 1e6 * fit.tip_error_s)} us, V = "
+        f"{with_error(fit.speed_m_per_s, fit.speed_error_m_per_s)} m/s, Gamma = "
+        f"{with_error(fit.Gamma_J_per_m2, fit.Gamma_error_J_per_m2)} J/m2, residual "
+        f"{100 * fit.residual_of_all:.0f} %"
+    )
+    return "; ".join([told, *fit.doubts])
+
+
+def lines_of_comparison(found: xr.Dataset) -> list[str]:
+    lines = [f"run's clock less the records': {1e6 * float(found.shift_s):.2f} us"]
+    for name in found.gauge.values:
+        at = found.sel(gauge=name)
+        parts = [p for p in COMPONENTS if at.misfit.sel(component=p) == at.misfit.sel(component=p)]
+        told = ", ".join(f"{p} {100 * float(at.misfit.sel(component=p)):.0f} %" for p in parts)
+        own = ", ".join(f"{p} {100 * float(at.own_misfit.sel(component=p)):.0f} %" for p in parts)
+        lines.append(f"{name}: misfit {told}; by its own clock, {1e6 * float(at.own_shift_s):.2f} us, {own}")
+    return [*lines, *found.attrs["notes"]]
+
+
+def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
+    at_gauge = ("x_m", "y_m", "own_shift_s")
+    return [
+        {"gauge": str(name), "component": part, "shift_s": float(found.shift_s)}
+        | {of: float(found[of].sel(gauge=name)) for of in at_gauge}
+        | {of: float(found[of].sel(gauge=name, component=part)) for of in ("misfit", "own_misfit")}
+        for name in found.gauge.values
+        for part in COMPONENTS
+    ]
+
+
+def work(options: argparse.Namespace) -> list[str]:
+    run = open_run(options.records) if is_folder(options.records) else None
+    read = read_gauges(options.records) if run is None else gauges_of(run, stress=options.stress)
+    gauges, notes = prepared(read, options)
+    if options.compare is not None:
+        beside = open_run(options.compare)
+        found = compare_gauges(gauges, beside, within_s=options.within_s)
+        lines, rows = lines_of_comparison(found), rows_of_comparison(found)
+    else:
+        fits = fit_tips(
+            gauges, bodies(options, run), speed_m_per_s=options.speed_m_per_s, passages=options.passages,
+            direction=options.direction, r_min_m=options.r_min_m, r_max_m=options.r_max_m,
+            step=not options.no_step,
+        )  # fmt: skip
+        is_strain = {gauge.name: gauge.is_strain for gauge in gauges}
+        lines, rows = [line_of(fit) for fit in fits], [row_of(fit, is_strain[fit.gauge]) for fit in fits]
+    if options.output is not None:
+        command.require_own(options.output, MARK.encode(), "a table of slipfront gauges")
+        with command.publishing_into(options.output.parent) as made:
+            (made / options.output.name).write_text(MARK + as_csv(rows), encoding="utf-8")
+    if options.figure is not None:
+        from slipfront.figures.gauges import draw_comparison, draw_fits
+        from slipfront.figures.picture import write_results
+
+        def draw(_: Path) -> Any:
+            if options.compare is None:
+                return draw_fits(gauges, fits)
+            return draw_comparison(gauges, beside, float(found.shift_s))
+
+        notes = [*notes, *write_results(options.figure, options.records, draw)]
+    return [*lines, *notes]
+
+
+def in_words(text: str) -> str:
+    """Options by their names on the command line."""
+    return re.sub(
+        rf"\b({'|'.join(OPTIONS)})\b", lambda found: f"--{found[0].lower().replace('_', '-')}", text
+    )
+
+
+def main(arguments: list[str]) -> int:
+    options = parse(arguments)
+
+    def told() -> list[str]:
+        try:
+            return work(options)
+        except CaseError as error:
+            raise DataError(in_words(str(error))) from None
+
+    return command.run("slipfront gauges", told)

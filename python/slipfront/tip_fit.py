@@ -1,0 +1,466 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The steadily moving near-tip field of a front fitted to records of strain gauges. docs/gauges.md
+
+K is positive where the body above slips to +x."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from slipfront import _core
+from slipfront.errors import CaseError
+from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth
+from slipfront.given import array, instance, number, shown, whole
+from slipfront.opened import OpenRun
+from slipfront.running import CaseLike, make_case
+
+LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
+LARGE_ERROR = 0.5  # of Gamma
+SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
+STARTS = 3  # the best of them are refined
+LEAST_TIMES = 8
+ROUNDING = 1e-24  # of squares: a record that changes less is constant
+ROUNDS = 3  # of fits of several tips, each without the others
+LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
+REACH = 5.0  # of a fit from the tip, in heights of the gauge
+
+
+@dataclass(frozen=True)
+class TipFit:
+    """The tip of a front as a gauge saw it pass. Errors are standard ones; NaN of what was given."""
+
+    gauge: str
+    x_m: float
+    y_m: float
+    direction: int  # of the front along x
+    tip_s: float  # when the tip is below, or above, the gauge
+    tip_error_s: float
+    speed_m_per_s: float
+    speed_error_m_per_s: float
+    K_Pa_sqrt_m: float
+    K_error_Pa_sqrt_m: float
+    Gamma_J_per_m2: float
+    Gamma_error_J_per_m2: float
+    offset: dict[str, float]  # by component: the level ahead of the tip that the field adds to
+    step: dict[str, float]  # and by how much it changes until far behind
+    residual: dict[str, float]  # rms of the residuals over that of the record in the fit, about its mean
+    residual_of_all: float
+    n_times: int
+    doubts: list[str]  # why the fit is not fit for use; empty where nothing speaks against it
+    time_s: np.ndarray = field(repr=False)  # of the fit
+    fitted: dict[str, np.ndarray] = field(repr=False)
+
+
+class Trial(NamedTuple):
+    """How the model does at a speed and time of the tip."""
+
+    square: float  # of the record about its means
+    left: float  # the share that the model leaves
+    slips_to_x: bool  # K is positive
+
+
+def ranked(trials: list[Trial]) -> list[int]:
+    """Those where the record changes much, from the one that leaves least. Without xy both directions leave
+    the same: then slip to +x comes first."""
+    most = max((t.square for t in trials), default=0.0)
+    changing = [k for k, t in enumerate(trials) if t.square > LEAST_SQUARE * most]
+    return sorted(changing, key=lambda k: (round(trials[k].left, 9), not trials[k].slips_to_x))
+
+
+class Tip:
+    """The model: a gauge, the bodies, a direction."""
+
+    def __init__(
+        self, gauge: Gauge, case: _core.Case, along_x: int, step: bool, r_m: tuple[float, float]
+    ) -> None:
+        self.gauge, self.case, self.along_x, self.step, self.r_m = gauge, case, along_x, step, r_m
+        self.parts = [part for part in COMPONENTS if part in gauge.values]
+        self.data = np.array([np.asarray(gauge.values[part], float) for part in self.parts])
+        self.time_s = np.asarray(gauge.time_s, float)
+        self.kernel = None
+        if gauge.smoothing_s > 0:
+            self.step_s = float(self.time_s[1] - self.time_s[0])
+            self.kernel = gaussian(gauge.smoothing_s / self.step_s)
+
+    def inside(self, speed: float, tip_s: float) -> np.ndarray:
+        """Indices of the times at which the gauge is in reach of the tip and outside of r_min."""
+        far_s = np.sqrt(self.r_m[1] ** 2 - self.gauge.y_m**2) / speed
+        at = np.arange(*np.searchsorted(self.time_s, [tip_s - far_s, tip_s + far_s]))
+        return at[np.hypot(speed * (self.time_s[at] - tip_s), self.gauge.y_m) >= self.r_m[0]]
+
+    def shapes(self, speed: float, tip_s: float, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The field over K of each component, and the step that goes with it, at the times of these
+        indices."""
+        time_s = self.time_s[at]
+        if self.kernel is not None:
+            n = len(self.kernel) // 2
+            around = np.arange(at[0] - n, at[-1] + n + 1)
+            time_s = self.time_s[0] + self.step_s * around
+        x_m = np.ascontiguousarray(self.along_x * speed * (tip_s - time_s))
+        y_m = np.full_like(x_m, self.gauge.y_m)
+        tip = _core.TipField(self.case, speed, self.along_x)
+        of = tip.strain_per_K if self.gauge.is_strain else tip.stress_per_K
+        per_K = dict(zip(COMPONENTS, of(x_m, y_m), strict=True))
+        rows = [per_K[part] for part in self.parts]
+        # 0 ahead and 1 behind on the interface, and harmonic above it.
+        rows.append(np.arctan2(abs(self.gauge.y_m), self.along_x * x_m) / np.pi)
+        if self.kernel is not None:
+            rows = [smooth(row, self.kernel)[at - at[0]] for row in rows]
+        return np.array(rows[:-1]), rows[-1]
+
+    def columns(self, speed: float, tip_s: float, at: np.ndarray) -> np.ndarray:
+        """Of the linear parameters: K; offset of each component; step of each. [components x times, ...]"""
+        per_K, stepped = self.shapes(speed, tip_s, at)
+        each = np.eye(len(self.parts))
+        level = np.repeat(each, len(at), axis=0)
+        columns = [per_K.reshape(-1, 1), level]
+        if self.step:
+            columns.append(level * np.tile(stepped, len(self.parts))[:, None])
+        return np.hstack(columns)
+
+    def trial(self, speed: float, tip_s: float) -> Trial:
+        at = self.inside(speed, tip_s)
+        if len(at) < LEAST_TIMES:
+            return Trial(0.0, 1.0, False)
+        columns, data = self.columns(speed, tip_s, at), self.data[:, at].ravel()
+        n = len(self.parts)
+        q, r = np.linalg.qr(np.roll(columns / np.linalg.norm(columns, axis=0), -1, axis=1))  # K last
+        along = q.T @ data
+        square = float(data @ data - along[:n] @ along[:n])
+        if square <= ROUNDING * float(data @ data):
+            return Trial(0.0, 1.0, False)
+        left = float(data @ data - along @ along) / max(square, 1e-300)
+        return Trial(square, left, bool(along[-1] * r[-1, -1] > 0))
+
+
+def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
+    """The bodies of a run, a case, or a dictionary of its tables material and base, such as
+    {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane. No size counts."""
+    if isinstance(given, OpenRun):
+        given = {name: table for name, table in given.case.items() if name in ("material", "base")}
+    if isinstance(given, Mapping) and isinstance(base := given.get("base"), Mapping):
+        given = {**given, "base": {"height_m": 0.1, **base}} if base.get("kind") == "body" else given
+    case = given if isinstance(given, _core.Case) else make_case(given, None, {})
+    one = np.ones(1)
+    if np.isnan(_core.TipField(case, 0.0, 1).stress_per_K(one, one)[0][0]):
+        raise CaseError("the bodies differ: the field is that of equal bodies or of one on a rigid plane")
+    return case
+
+
+def tip_field(
+    bodies: OpenRun | CaseLike,
+    x_m: ArrayLike,
+    y_m: ArrayLike,
+    *,
+    speed_m_per_s: float,
+    Gamma_J_per_m2: float,
+    direction: int = 1,
+    stress: bool = False,
+) -> dict[str, np.ndarray]:
+    """Strain, or stress in Pa, that the tip of a front along direction adds to the state with the residual
+    traction: xx, yy, xy at places from the tip. The body above slips to +x. NaN below a rigid plane."""
+    case = bodies_of(bodies)
+    V = number(speed_m_per_s, "speed_m_per_s", least=0)
+    if direction not in (1, -1):
+        raise CaseError(f"direction is {shown(direction)}; it must be 1 or -1")
+    tip = _core.TipField(case, V, direction)
+    if not tip.limiting_speed_m_per_s > V:
+        raise CaseError(f"speed_m_per_s is {V:g}; the field ends at {tip.limiting_speed_m_per_s:.5g} m/s")
+    K = np.sqrt(number(Gamma_J_per_m2, "Gamma_J_per_m2", least=0) / tip.energy_per_K2)
+    x, y = np.broadcast_arrays(np.asarray(x_m, float), np.asarray(y_m, float))
+    found = (tip.stress_per_K if stress else tip.strain_per_K)(
+        array(x.ravel(), "x_m"), array(y.ravel(), "y_m")
+    )
+    return {part: K * of.reshape(x.shape) for part, of in zip(COMPONENTS, found, strict=True)}
+
+
+def scan(tip: Tip, speed: float, tip_s: float | None) -> float | None:
+    """The best time of the tip at a speed."""
+    fine_s = 0.25 * abs(tip.gauge.y_m) / speed
+    ends = (tip.time_s[0], tip.time_s[-1]) if tip_s is None else (tip_s - 8 * fine_s, tip_s + 8 * fine_s)
+    step_s = max(fine_s, (ends[1] - ends[0]) / (2 * len(tip.time_s)))  # finer than the record is no use
+    tips = np.arange(ends[0], ends[1] + step_s, step_s)
+    order = ranked([tip.trial(speed, t) for t in tips])
+    return float(tips[order[0]]) if order else None
+
+
+def least_squares(
+    residual: Any, start: np.ndarray, steps: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Levenberg and Marquardt; derivatives by differences over the steps."""
+    at, damping = start, 1e-3
+    now = residual(at)
+    for _ in range(60):
+        moves = np.diag(steps)
+        slopes = np.array([(residual(at + m) - residual(at - m)) / (2 * m.sum()) for m in moves]).T * steps
+        normal = slopes.T @ slopes
+        move = -steps * np.linalg.solve(normal + damping * np.diag(np.diag(normal) + 1e-300), slopes.T @ now)
+        tried = np.clip(at + move, low, high)
+        then = residual(tried)
+        gain = now @ now - then @ then
+        if gain > 0:
+            at, now, damping = tried, then, damping / 5
+        else:
+            damping *= 5
+        if damping > 1e8 or 0 < gain < 1e-9 * (now @ now):
+            break
+    return at
+
+
+def fit_tip(
+    gauge: Gauge,
+    bodies: OpenRun | CaseLike | _core.Case,
+    *,
+    speed_m_per_s: float | None = None,
+    direction: int | None = None,
+    tip_s: float | None = None,
+    r_min_m: float = 0.0,
+    r_max_m: float | None = None,
+    step: bool = True,
+) -> TipFit:
+    """The steadily moving mode II field fitted to a gauge's record: K and with it the fracture energy Gamma,
+    the speed unless it is given, the time of the tip, and of each component an offset and a step of the
+    residual stress or strain.
+
+    bodies: see bodies_of. direction: +1 or -1 along x, None: the one that explains more. tip_s: about when
+    the tip passes, None: where the field explains most of the record.
+    The fit takes the times at which the gauge is from r_min_m, beyond the cohesive zone, to r_max_m from the
+    tip, by default 5 times the gauge's height.
+    Errors follow from the Jacobian and the scatter, with the correlation of neighbouring residuals."""
+    instance(gauge, Gauge, "gauge")
+    case = bodies_of(bodies)
+    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
+    height = abs(gauge.y_m)
+    r_m = (
+        number(r_min_m, "r_min_m", least=0),
+        number(REACH * height if r_max_m is None else r_max_m, "r_max_m"),
+    )
+    if not max(r_m[0], height) < r_m[1]:
+        raise CaseError(
+            f"gauge {gauge.name}: r_max_m is {r_m[1]:g}; it must be above r_min_m and the gauge's height"
+        )
+    if direction not in (None, 1, -1):
+        raise CaseError(f"direction is {shown(direction)}; it must be 1, -1 or None")
+    speeds = [share * limit for share in SHARES]
+    if speed_m_per_s is not None:
+        speeds = [number(speed_m_per_s, "speed_m_per_s", above=0)]
+        if not speeds[0] < limit:
+            raise CaseError(f"speed_m_per_s is {speeds[0]:g}; the field ends at {limit:.5g} m/s")
+    try:
+        with np.errstate(all="ignore"):
+            return sought(gauge, case, speeds, speed_m_per_s is not None, direction, tip_s, step, r_m)
+    except (np.linalg.LinAlgError, OverflowError):
+        raise CaseError(
+            f"gauge {gauge.name}: cannot be fitted: its numbers are too large or too small"
+        ) from None
+
+
+def sought(
+    gauge: Gauge, case: _core.Case, speeds: list[float], given: bool, direction: int | None,
+    tip_s: float | None, step: bool, r_m: tuple[float, float],
+) -> TipFit:  # fmt: skip
+    """The best fit from starts at these speeds; `given`: the one speed is kept."""
+    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
+    starts = []
+    for way in (1, -1) if direction is None else (direction,):
+        tip = Tip(gauge, case, way, step, r_m)
+        times_s = [(v, scan(tip, v, tip_s)) for v in speeds]
+        starts += [(tip.trial(v, t), tip, v, t) for v, t in times_s if t is not None]
+    ended = []
+    for k in ranked([start[0] for start in starts])[:STARTS]:
+        _, tip, v, t = starts[k]
+        t, v, at = refined(tip, v, t, given, limit)
+        ended.append((tip.trial(v, t), tip, v, t, at))
+    order = ranked([end[0] for end in ended])
+    if not order:
+        raise CaseError(
+            f"gauge {gauge.name}: nothing changes, or too few times are within {r_m[1]:g} m of a tip"
+        )
+    _, tip, v, t, at = ended[order[0]]
+    return result(tip, v, t, at, given, limit)
+
+
+def refined(
+    tip: Tip, speed: float, at_s: float, given: bool, limit: float
+) -> tuple[float, float, np.ndarray]:
+    """Time of the tip, speed and the times of the fit, which follow the tip."""
+
+    def residual(p: np.ndarray) -> np.ndarray:
+        columns = tip.columns(speed if given else p[1], p[0], at)
+        q, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
+        data = tip.data[:, at].ravel()
+        return data - q @ (q.T @ data)
+
+    n = 1 if given else 2
+    at = tip.inside(speed, at_s)
+    for _ in range(8):
+        reach_s = tip.r_m[1] / speed
+        steps = np.array([1e-3 * abs(tip.gauge.y_m) / speed, 1e-4 * limit])[:n]
+        low, high = np.array([at_s - reach_s, 0.02 * limit]), np.array([at_s + reach_s, 0.999 * limit])
+        found = least_squares(residual, np.array([at_s, speed])[:n], steps, low[:n], high[:n])
+        moved = tip.inside(speed if given else found[1], found[0])
+        if len(moved) < LEAST_TIMES:
+            break
+        at_s, speed = float(found[0]), speed if given else float(found[1])
+        if np.array_equal(moved, at):
+            break
+        at = moved
+    return at_s, speed, at
+
+
+def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float) -> TipFit:
+    gauge, n = tip.gauge, len(tip.parts)
+    columns, data = tip.columns(speed, at_s, at), tip.data[:, at].ravel()
+    if not np.isfinite(columns).all():
+        raise np.linalg.LinAlgError  # of which LAPACK would print a line
+    size = np.linalg.norm(columns, axis=0)
+    linear = np.linalg.lstsq(columns / size, data, rcond=None)[0] / size
+    K = float(linear[0])
+    fitted = columns @ linear
+    left = (data - fitted).reshape(n, -1)
+    about_mean = tip.data[:, at] - tip.data[:, at].mean(axis=1, keepdims=True)
+
+    def rms(values: np.ndarray) -> Any:
+        return np.sqrt((values**2).mean(axis=-1))
+
+    ds, dv = 1e-3 * abs(gauge.y_m) / speed, 1e-4 * limit
+    moved = [(tip.columns(speed, at_s + d, at) @ linear) for d in (ds, -ds)]
+    slopes = [columns, ((moved[0] - moved[1]) / (2 * ds))[:, None]]
+    if not given:
+        moved = [(tip.columns(speed + d, at_s, at) @ linear) for d in (dv, -dv)]
+        slopes.append(((moved[0] - moved[1]) / (2 * dv))[:, None])
+    jacobian = np.hstack(slopes)
+    scale = np.linalg.norm(jacobian, axis=0)
+    free = max(data.size - jacobian.shape[1], 1)
+    follow = (left[:, 1:] * left[:, :-1]).sum() / max((left**2).sum(), 1e-300)
+    variance = (left**2).sum() / free * max(1.0, (1 + follow) / max(1 - follow, 1e-3))
+    covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
+    errors = np.sqrt(np.diag(covariance))
+    i_tip, i_speed = columns.shape[1], columns.shape[1] + 1
+
+    def per_K2(v: float) -> float:
+        return _core.TipField(tip.case, v, tip.along_x).energy_per_K2
+
+    slope = np.zeros(jacobian.shape[1])
+    slope[0] = 2 * K * per_K2(speed)
+    if not given:
+        slope[i_speed] = K**2 * (per_K2(speed + dv / 10) - per_K2(speed - dv / 10)) / (dv / 5)
+    Gamma, Gamma_error = K**2 * per_K2(speed), float(np.sqrt(slope @ covariance @ slope))
+    of_all = float(np.sqrt((left**2).sum() / max((about_mean**2).sum(), 1e-300)))
+    doubts = []
+    if of_all > LARGE_RESIDUAL:
+        doubts.append(f"the residual is {100 * of_all:.0f} % of the record: it is not that of such a tip")
+    if not given and not 0.03 * limit < speed < 0.997 * limit:
+        doubts.append("the speed went to the end of its range: give it")
+    if Gamma_error > LARGE_ERROR * Gamma:
+        doubts.append("the record hardly determines Gamma" + ("" if given else ": give the speed"))
+    if K < 0:
+        doubts.append("K is negative: the body above slips to -x")
+    time_s = tip.time_s[at]
+    if min(np.count_nonzero(time_s < at_s), np.count_nonzero(time_s > at_s)) < 4:
+        doubts.append("the record has hardly any times on one side of the tip")
+    return TipFit(
+        gauge.name, gauge.x_m, gauge.y_m, tip.along_x, at_s, float(errors[i_tip]), speed,
+        np.nan if given else float(errors[i_speed]), K, float(errors[0]), Gamma, Gamma_error,
+        dict(zip(tip.parts, linear[1 : 1 + n].tolist(), strict=True)),
+        dict(zip(tip.parts, (linear[1 + n :] if tip.step else np.zeros(n)).tolist(), strict=True)),
+        dict(zip(tip.parts, (rms(left) / np.maximum(rms(about_mean), 1e-300)).tolist(), strict=True)),
+        of_all, len(at), doubts, time_s, dict(zip(tip.parts, fitted.reshape(n, -1), strict=True)),
+    )  # fmt: skip
+
+
+def fit_tips(
+    gauges: Iterable[Gauge],
+    bodies: OpenRun | CaseLike,
+    *,
+    speed_m_per_s: float | str | None = None,
+    passages: int = 1,
+    **options: Any,
+) -> list[TipFit]:
+    """fit_tip of each gauge and each of so many passages of fronts, in the order of time.
+
+    speed_m_per_s: a number; None: of each fit; "gauges": by the times of the tip at the gauges beside it, in
+    the same passage and direction, fitted first. options: of fit_tip."""
+    case, n = bodies_of(bodies), whole(passages, "passages", least=1)
+    if isinstance(speed_m_per_s, str) and speed_m_per_s != "gauges":
+        raise CaseError(f"speed_m_per_s is {shown(speed_m_per_s)}; it must be a number, None or 'gauges'")
+    speed = None if isinstance(speed_m_per_s, str) else speed_m_per_s
+    given = list(gauges)
+    options["speed_m_per_s"] = speed
+    found = [passing(gauge, case, n, options) for gauge in given]
+    if speed_m_per_s == "gauges":
+        speeds = [speeds_between(found, own) for own in found]
+        for k, gauge in enumerate(given):
+            found[k] = refitted(gauge, case, found[k], options, speeds[k])
+    return [fit for own in found for fit in own]
+
+
+def passing(gauge: Gauge, case: _core.Case, n: int, options: dict[str, Any]) -> list[TipFit]:
+    """The tips that pass a gauge: each is sought in what those before it leave of the record."""
+    found: list[TipFit] = []
+    rest = gauge
+    for _ in range(n):
+        found.append(fit_tip(rest, case, **options))
+        rest = without(rest, case, found[-1])
+    found.sort(key=lambda fit: fit.tip_s)
+    for _ in range(ROUNDS if n > 1 else 0):
+        found = refitted(gauge, case, found, options, [options["speed_m_per_s"]] * n)
+    return found
+
+
+def refitted(
+    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any], speeds: list[Any]
+) -> list[TipFit]:
+    """Each tip again, about where it was, in the record without the others."""
+    found = list(fits)
+    for k, speed in enumerate(speeds):
+        rest = gauge
+        for other in found[:k] + found[k + 1 :]:
+            rest = without(rest, case, other)
+        known = {"speed_m_per_s": speed, "direction": fits[k].direction, "tip_s": fits[k].tip_s}
+        fit = fit_tip(rest, case, **{**options, **known})
+        at = np.searchsorted(gauge.time_s, fit.time_s)
+        others = {part: (np.asarray(gauge.values[part]) - rest.values[part])[at] for part in fit.fitted}
+        found[k] = replace(fit, fitted={part: fit.fitted[part] + others[part] for part in others})
+    return found
+
+
+def without(gauge: Gauge, case: _core.Case, fit: TipFit) -> Gauge:
+    """The record less the field and the step of a tip."""
+    per_K, stepped = Tip(gauge, case, fit.direction, True, (0, 1)).shapes(
+        fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s))
+    )
+    less = {
+        part: fit.K_Pa_sqrt_m * of + fit.step[part] * stepped
+        for part, of in zip(fit.step, per_K, strict=True)
+    }
+    return replace(gauge, values={part: np.asarray(v) - less[part] for part, v in gauge.values.items()})
+
+
+def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
+    """Of each fit of a gauge: the slope of the tips' times over x, by the parabola through three gauges side
+    by side, or the line through two. Fronts are the same by their direction and their order."""
+    made = []
+    for k, fit in enumerate(own):
+        way = fit.direction
+        order = sum(f.direction == way for f in own[:k])
+        of_way = [[f for f in fits if f.direction == way] for fits in every]
+        same = [fits[order] for fits in of_way if len(fits) > order]
+        x, first = np.unique([f.x_m for f in same], return_index=True)
+        if len(x) < 2:
+            raise CaseError(
+                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give a number"
+            )
+        tips = np.array([f.tip_s for f in same])[first]
+        slowness = np.gradient(tips, x, edge_order=2 if len(x) > 2 else 1)[np.searchsorted(x, fit.x_m)]
+        if not slowness * way > 0:
+            raise CaseError(
+                f"gauge {fit.gauge}: its neighbours' tips do not follow one another; give a speed"
+            )
+        made.append(float(way / slowness))
+    return made
