@@ -166,7 +166,6 @@ def test_the_sample_with_a_held_edge():
     edges = {"plate.top": "loaded", "plate.sides": "free", "base.bottom": "held", "base.sides": "free"}
     held = slipfront.predict_fronts(CASE, edges)
     assert held.attrs["bodies"] == "the sample, its far edges held"
-    open_ = slipfront.predict_fronts(CASE)
     # Held edges take what the crack would release beyond them: it is twice as long as a body is high.
     at = [
         data.isel(point=(data.direction == 1).to_numpy()) for data in (held, slipfront.predict_fronts(CASE))
