@@ -4,9 +4,12 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "cli/command.hpp"
@@ -25,8 +28,23 @@ struct FractureOptions {
   std::string output;
 };
 
+/// By it a file is known that may be replaced.
+constexpr std::string_view mark = "# fronts by slipfront fracture\n";
+
+/// @throws UserError where anything but such a table is there
+void require_own(const std::filesystem::path& file) {
+  if (!files::is_there(file)) return;
+  std::string beginning(mark.size(), ' ');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  if (!stream || beginning != mark)
+    throw UserError(
+        "{}: is there and not a table of slipfront fracture: not replaced; give another name with -o",
+        file.string());
+}
+
 std::string csv(const fracture::Prediction& prediction) {
-  std::string text = "direction";
+  std::string text = std::string(mark) + "direction";
   for (const auto& column : fracture::predicted_fields) text += fmt::format(",{}", column.name);
   text += "\n";
   for (const auto& front : prediction.fronts)
@@ -54,6 +72,7 @@ std::string line_of(const fracture::PredictedFront& front, double c_S) {
 }
 
 void predict(const CaseArguments& arguments, const FractureOptions& options) {
+  if (!options.output.empty()) require_own(options.output);
   const auto given = arguments.read();
   const auto& config = given.config();
   run::TipFriction friction;

@@ -45,8 +45,8 @@ constexpr double of_factor = 54, of_indices = 45;
 /// Of a pair of displacements of the interface: the dense end of the factor, fronts, equations of contact.
 constexpr double of_dense_pair = 56;
 /// Of an interface node: its state; of what is recorded of it five changes of contact, each with its time and
-/// place, and two tractions at all nodes around it as far as l*.
-constexpr double of_interface = 500, changes = 5, of_change = 32, of_node_around = 16;
+/// place, and two tractions at all nodes around it as far as l*; and slip behind the tip as it passes.
+constexpr double of_interface = 620, changes = 5, of_change = 32, of_node_around = 16, of_tip_slip = 620;
 /// What rank 0 of several has beside its part, of each node of the bodies: the mesh.
 constexpr double mesh_of_root = 32;
 /// Of a cell of a relief, for a rank 0 that has no more of the bodies than these and the interface.
@@ -112,7 +112,7 @@ double rows_of(double end_s, double interval_s, double step_s) {
 
 double record_bytes(const input::Case& config, double n_interface) {
   const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
-  return n_interface * changes * (of_change + of_node_around * (2 * halo + 1));
+  return n_interface * (changes * (of_change + of_node_around * (2 * halo + 1)) + of_tip_slip);
 }
 
 /// What the ranks here know of the bodies that others move, and how many nodes those here move.

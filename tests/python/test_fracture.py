@@ -130,10 +130,24 @@ def test_the_program_predicts_the_same(tmp_path):
     assert "first crack 0.0365 m: it runs" in said
     assert said.count("through to the end of the contact") == 2
     with open(tmp_path / "fronts.csv", newline="") as file:
+        assert file.readline() == "# fronts by slipfront fracture\n"
         rows = list(csv.DictReader(file))
     predicted = slipfront.predict_fronts(CASE)
     for name in ("x_m", "G_static_J_per_m2", "v_tip_m_per_s", "time_s"):
         np.testing.assert_array_equal([float(row[name]) for row in rows], predicted[name])
+
+
+def test_the_program_replaces_no_other_file(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    (tmp_path / "mine.csv").write_text("direction,x_m\n")
+    said = refusal(program("fracture", "case.toml", "-o", "mine.csv", cwd=tmp_path))
+    assert (
+        said
+        == "mine.csv: is there and not a table of slipfront fracture: not replaced; give another name with -o"
+    )
+    assert (tmp_path / "mine.csv").read_text() == "direction,x_m\n"
+    for _ in range(2):
+        require_done(program("fracture", "case.toml", "-o", "fronts.csv", cwd=tmp_path))
 
 
 def test_arrest_where_the_bodies_get_tougher():
@@ -201,3 +215,49 @@ def test_a_law_without_a_length_has_no_fracture_energy(tmp_path):
 def test_options_refused(options, said):
     with pytest.raises(slipfront.CaseError, match=said):
         slipfront.predict_fronts(CASE, **options)
+
+
+STEP_M, WIDTH_M, SPACING_M = 70e-3, 0.5, 0.5e-3
+
+
+def stepped(before: float, beyond: float) -> np.ndarray:
+    """By place: a value within STEP_M of the middle, another one beyond."""
+    x_m = np.arange(0, WIDTH_M + SPACING_M / 2, SPACING_M)
+    return np.where(abs(x_m - WIDTH_M / 2) < STEP_M, before, beyond)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "key, columns",
+    [
+        ("prestress", {"t_Pa": stepped(2.35e6, 1.75e6), "p_Pa": stepped(5e6, 5e6)}),
+        ("prestress", {"t_Pa": stepped(2.35e6, 2.35e6), "p_Pa": stepped(5e6, 6.6e6)}),
+        ("friction", {"d_c_m": stepped(2e-6, 24e-6)}),
+    ],
+    ids=["shear", "pressure", "fracture energy"],
+)
+def test_fronts_arrest_beyond_the_prediction_by_their_cohesive_zone(key, columns, tmp_path):
+    """The table of docs/fracture.md. The tip is the head of the zone, and has momentum: two zones; where it
+    meets longer ones less than one, which is 9 pi/32 mu* d_c/(strength drop) at rest."""
+    x_m = np.arange(0, WIDTH_M + SPACING_M / 2, SPACING_M)
+    file = tmp_path / "steps.csv"
+    table = np.column_stack([x_m, *columns.values()])
+    np.savetxt(file, table, delimiter=",", header=",".join(["x_m", *columns]), comments="")
+    case = CASE.replace("width_m = 0.3", f"width_m = {WIDTH_M}").replace("height_m = 0.1", "height_m = 0.15")
+    case = case.replace("x_m = 0.15", "x_m = 0.25").replace("end_s = 150e-6", "end_s = 500e-6")
+    if key == "prestress":
+        case = case.replace("t_Pa = 2.35e6\np_Pa = 5e6\n", "")
+    case = case.replace(f"[{key}]\n", f'[{key}]\nfile = "{file}"\n')
+    predicted = slipfront.predict_fronts(case)
+    assert predicted.attrs["arrests"] == [-1, 1]
+    right = predicted.isel(point=(predicted.direction == 1).to_numpy())
+    expected_m = float(right.x_m[-1]) - 0.25
+    run = slipfront.run(case, progress=False)
+    fronts = run.fronts
+    assert [str(end) for end in fronts.end.values] == ["arrest", "arrest"]
+    found_m = float(fronts.x_m.where(fronts.direction_of_point == 1).max()) - 0.25
+    points = complete(run)
+    most_m = 3 * float(points.cohesive_zone_m.median())
+    if key == "friction":
+        most_m = 9 * np.pi / 32 * (5.6e9 / 2) * 24e-6 / 1e6
+    assert expected_m <= found_m < expected_m + most_m
