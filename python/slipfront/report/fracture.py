@@ -15,7 +15,7 @@ from slipfront.report.page import plot, section, words
 from slipfront.report.run_data import units_of
 
 ENERGIES = ("breakdown_work_J_per_m2", "G_slip_J_per_m2")
-LOG_FROM = 30.0  # the largest energy over the median fracture energy
+LOG_FROM = 10.0  # the largest energy over the median fracture energy
 Fracture = dict[int, dict[str, np.ndarray]]
 
 
