@@ -400,12 +400,15 @@ def read_fronts(file: Path, growing: bool = False) -> list[Front]:
     return fronts
 
 
-def read_fracture(file: Path, fronts: list[Front]) -> dict[int, dict[str, np.ndarray]] | None:
+def read_fracture(
+    file: Path, fronts: list[Front], blew_up: bool = False
+) -> dict[int, dict[str, np.ndarray]] | None:
     """FRACTURE_COLUMNS at the points of each front, by its id; NaN where the breakdown did not come to its
     end. None of a run by an earlier version."""
     if not belongs(file):
         return None
-    columns = read_columns(file, ("front_id", "x_m", "breakdown_complete", *FRACTURE_COLUMNS))
+    names = ("front_id", "x_m", "breakdown_complete", *FRACTURE_COLUMNS)
+    columns = read_columns(file, names, finite=not blew_up)
     points = np.array([(front.id, x) for front in fronts for x in front.x_m]).reshape(-1, 2)
     same = np.array_equal(points, np.column_stack([columns["front_id"], columns["x_m"]]))
     require(same, file, "its rows are not those of fronts.csv: the files are of two runs")

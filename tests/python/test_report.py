@@ -260,6 +260,23 @@ def test_a_page_says_why_nothing_is_predicted(crack):
     assert "No prediction: " in text and "not_a_law" in text
 
 
+def test_a_page_of_a_run_that_blew_up_leaves_out_what_is_no_number(crack):
+    (crack / "checksums.sha256").unlink()
+    file = crack / "fracture.csv"
+    lines = file.read_text().splitlines()
+    at = lines[0].split(",").index("breakdown_work_J_per_m2")
+    done = next(k for k, line in enumerate(lines[1:]) if line.split(",")[at + 6] == "1")
+    cells = lines[1 + done].split(",")
+    cells[at] = "inf"
+    file.write_text("\n".join([*lines[: 1 + done], ",".join(cells), *lines[2 + done :]]) + "\n")
+    change_json(crack / "run.json", lambda info: info.update(status="blew_up"))
+    text = page_of(crack)
+    fronts = data_of(text)["runs"][0]["fronts"]
+    gamma = [value for front in sorted(fronts, key=lambda f: f["id"]) for value in front["gamma"]]
+    assert gamma[done] is None and sum(value is not None for value in gamma) > 10
+    assert "No prediction: " in text
+
+
 def test_a_page_without_breakdown_or_of_an_older_run(crack, capsys):
     (crack / "checksums.sha256").unlink()
     file = crack / "fracture.csv"
@@ -267,7 +284,7 @@ def test_a_page_without_breakdown_or_of_an_older_run(crack, capsys):
     at = head.split(",").index("breakdown_complete")
     none = [",".join("0" if k == at else cell for k, cell in enumerate(row.split(","))) for row in rows]
     file.write_text("\n".join([head, *none]) + "\n")
-    assert "No front's breakdown came to its end." in page_of(crack)
+    assert "The breakdown of no front that is drawn came to its end." in page_of(crack)
     capsys.readouterr()
     file.write_text("\n".join([head, *rows[1:]]) + "\n")
     assert "its rows are not those of fronts.csv" in refusal(capsys, crack)

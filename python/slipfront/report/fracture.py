@@ -9,7 +9,7 @@ import numpy as np
 
 import slipfront
 from slipfront.errors import Error
-from slipfront.read import Run, read_fracture
+from slipfront.read import BLEW_UP, Run, read_fracture
 from slipfront.report.numbers import Unit, listed
 from slipfront.report.page import plot, section, words
 from slipfront.report.run_data import units_of
@@ -21,7 +21,9 @@ Fracture = dict[int, dict[str, np.ndarray]]
 
 def fracture_of(run: Run) -> Fracture | None:
     """None, too, of a run whose tables may end anywhere."""
-    return None if run.place.growing else read_fracture(run.place.folder / "fracture.csv", run.fronts)
+    if run.place.growing:
+        return None
+    return read_fracture(run.place.folder / "fracture.csv", run.fronts, run.status == BLEW_UP)
 
 
 def prediction(run: Run, x_unit: Unit) -> tuple[dict[str, Any] | None, str]:
@@ -71,7 +73,8 @@ def fracture_data(run: Run, fracture: Fracture | None, fronts: list[dict[str, An
         return None
     of_drawn = [fracture[front["id"]] for front in fronts]
     energy, by_slip = (np.concatenate([of[name] for of in of_drawn]) for name in ENERGIES)
-    energy = energy[energy > 0]
+    energy = energy[np.isfinite(energy) & (energy > 0)]
+    by_slip = by_slip[np.isfinite(by_slip)]
     if len(energy) == 0:
         return None
     for front, of in zip(fronts, of_drawn, strict=True):
@@ -79,7 +82,7 @@ def fracture_data(run: Run, fracture: Fracture | None, fronts: list[dict[str, An
     curves, said = prediction(run, units_of(run)["x"])
     at_rest = [g for g in curves["at_rest"] if g is not None] if curves else []
     typical = float(np.median(energy))
-    largest = max(float(np.nanmax([*energy, *by_slip])), *at_rest, 0.0)
+    largest = float(max(*energy, *by_slip, *at_rest))
     is_log = largest > LOG_FROM * typical
     return {
         "prediction": curves,
@@ -92,7 +95,7 @@ def fracture_data(run: Run, fracture: Fracture | None, fronts: list[dict[str, An
 def fracture_section(data: dict[str, Any] | None) -> str:
     heading = "G against Γ"
     if data is None:
-        return section("fracture", heading, "<p>No front's breakdown came to its end.</p>")
+        return section("fracture", heading, "<p>The breakdown of no front that is drawn came to its end.</p>")
     return section(
         "fracture",
         heading,
