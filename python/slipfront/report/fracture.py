@@ -29,6 +29,8 @@ def fracture_of(run: Run) -> Fracture | None:
 def prediction(run: Run, x_unit: Unit) -> tuple[dict[str, Any] | None, str]:
     """Curves of the equation of motion with the run's own friction, a gap between directions; and what to say
     of them."""
+    if run.status == BLEW_UP:
+        return None, "No prediction: the run blew up."
     try:
         found = slipfront.predict_fronts(slipfront.OpenRun(run.place))
     except (Error, ImportError) as error:
