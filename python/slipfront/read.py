@@ -47,6 +47,8 @@ FRONT_COLUMNS = (
     "U_s_J_per_m3",
     "U_r_J_per_m3",
 )
+# Columns of fracture.csv that pages and tables take.
+FRACTURE_COLUMNS = ("breakdown_work_J_per_m2", "cohesive_zone_m", "G_slip_J_per_m2")
 # What the time says that a tip takes at a row of fronts.csv; there is a speed with the first alone.
 SPEED_KINDS = ("front", "triggered", "simultaneous", "path_end")
 # Data sets of interface.h5; per row after the time, each at all nodes, in this order.
@@ -100,6 +102,12 @@ def ratio(numerator: np.ndarray, denominator: np.ndarray) -> np.ndarray:
     out = np.full(np.shape(numerator), np.nan)
     np.divide(numerator, denominator, out=out, where=np.asarray(denominator) != 0)
     return out
+
+
+def median(values: np.ndarray) -> float:
+    """Of those that are defined; NaN without any."""
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) > 0 else np.nan
 
 
 @dataclass(frozen=True)
@@ -390,6 +398,28 @@ def read_fronts(file: Path, growing: bool = False) -> list[Front]:
             )
         )
     return fronts
+
+
+def read_fracture(
+    file: Path, fronts: list[Front], blew_up: bool = False
+) -> dict[int, dict[str, np.ndarray]] | None:
+    """FRACTURE_COLUMNS at the points of each front, by its id; NaN where the breakdown did not come to its
+    end. None of a run by an earlier version."""
+    if not belongs(file):
+        return None
+    names = ("front_id", "x_m", "breakdown_complete", *FRACTURE_COLUMNS)
+    columns = read_columns(file, names, finite=not blew_up)
+    points = np.array([(front.id, x) for front in fronts for x in front.x_m]).reshape(-1, 2)
+    same = np.array_equal(points, np.column_stack([columns["front_id"], columns["x_m"]]))
+    require(same, file, "its rows are not those of fronts.csv: the files are of two runs")
+    done = columns["breakdown_complete"] == 1
+    return {
+        front.id: {
+            name: np.where(done, columns[name], np.nan)[columns["front_id"] == front.id]
+            for name in FRACTURE_COLUMNS
+        }
+        for front in fronts
+    }
 
 
 def checked_history(file: Path, history: History, blew_up: bool) -> History:

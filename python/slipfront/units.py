@@ -27,7 +27,8 @@ ENDINGS = {
 SYMBOLS = ("mu_s", "mu_k", "d_c", "l_star")  # their underscores are subscripts
 PREFIXED = ("m", "s", "Pa", "N/m")
 PREFIXES = {"G": 1e-9, "M": 1e-6, "k": 1e-3, "": 1.0, "m": 1e3, "µ": 1e6, "n": 1e9}
-WRITTEN = {"kg/m3": "kg/m³", "m2/s2": "m²/s²", "J/m3": "J/m³", "J/m2": "J/m²", "J m-1": "J/m"}
+WRITTEN = {"kg/m3": "kg/m³", "m2/s2": "m²/s²", "J/m3": "J/m³", "J/m2": "J/m²"}
+WRITTEN |= {"J m-1": "J/m", "J m-2": "J/m²"}  # of NetCDF
 
 #: What columns of tables and arrays hold.
 LONG_NAMES = {

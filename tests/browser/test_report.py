@@ -147,6 +147,8 @@ def test_a_node_that_is_pointed_at_is_marked_everywhere(opened):
     )
     assert here == marks
     assert browser.execute_script(mark("space-time"))[0][0] == marks[0][0]
+    energy, speed = browser.execute_script(mark("fracture"))
+    assert energy[0] == speed[0] == marks[0][0] and speed[1] == marks[0][1] and energy[1] > 0
 
 
 def test_points_selected_in_one_panel_are_selected_in_all(opened):

@@ -13,6 +13,8 @@ import common
 import h5py
 import numpy as np
 import pytest
+import slipfront
+from package_cases import write_case
 from refusals import change_json, flip, one_line
 from slipfront import __main__ as package
 from slipfront.read import PROBE_FIELDS, Fields, read_balance
@@ -25,6 +27,7 @@ from synthetic import write_checksums, write_output, write_run
 from synthetic_study import write_interface_step, write_open_choices, write_study
 
 PROBE_PARTS = {"probes-plot", "probes-change"}  # of the page of a run with probes alone
+OTHER_PARTS = PROBE_PARTS | {"data", "run", "criteria-more", "fracture-plot"}  # that a page may lack
 HOSTILE = '</script><script>alert(1)</script><b>"&\u202e'
 
 
@@ -92,7 +95,7 @@ def test_a_page_needs_no_network(run):
     assert not re.search(r'(?:src|href)="(?!#|data:)', text)
     # The plots that the script looks for, and controls that it wires.
     script = "".join(f.read_text() for f in Path(history.__file__).parent.glob("page/*.js"))
-    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - {"data", "run", "criteria-more", *PROBE_PARTS}
+    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - OTHER_PARTS
     assert wanted and all(f'id="{name}"' in text for name in wanted)
 
 
@@ -187,6 +190,107 @@ def test_probes_that_are_not_finite_are_refused(run, capsys):
     assert "probes.h5: a value of strain_xx is not finite" in refusal(capsys, run)
     change_json(run / "run.json", lambda info: info.update(status="blew_up"))
     assert len(data_of(page_of(run))["runs"][0]["probes"]["time"]) == 3
+
+
+# Fronts as cracks
+
+CRACK = """\
+title = "crack"
+[plate]
+height_m = 0.1
+element_size_m = 4e-3
+corner = "none"
+[loading]
+method = "prestress"
+[prestress]
+p_Pa = 5e6
+t_Pa = 3.8e6
+[friction]
+law = "slip_weakening"
+mu_s = 1.0
+mu_k = 0.6
+d_c_m = 8e-6
+[event]
+kind = "nucleation"
+[nucleation]
+x_m = 0.1
+half_length_m = 0.02
+taper_m = 0.02
+[time]
+end_s = 110e-6
+"""
+
+
+@pytest.fixture
+def crack(tmp_path):
+    """A run whose breakdown comes to its end at some nodes and at others does not."""
+    slipfront.run(write_case(tmp_path, CRACK), output=tmp_path / "crack")
+    return tmp_path / "crack"
+
+
+def test_a_page_holds_fracture_energy_and_what_is_predicted(crack):
+    run = slipfront.open(crack)
+    points = run.fracture.to_dataframe()
+    points.loc[points.breakdown_complete != 1, ["breakdown_work_J_per_m2", "G_slip_J_per_m2"]] = np.nan
+    text = page_of(crack)
+    data = data_of(text)["runs"][0]
+    for front in data["fronts"]:
+        own = points[points.front_id == front["id"]]
+        for name, column in (("gamma", "breakdown_work_J_per_m2"), ("g_slip", "G_slip_J_per_m2")):
+            np.testing.assert_allclose(np.array(front[name], float), own[column], rtol=1e-4)
+        assert 0 < own.breakdown_work_J_per_m2.count() < len(own) and own.G_slip_J_per_m2.any()
+        medians = (own[name].median() for name in ("breakdown_work_J_per_m2", "G_slip_J_per_m2"))
+        assert "".join(f"<td>{value:.3g}</td>" for value in medians) in text
+    predicted = slipfront.predict_fronts(run)
+    told = {name: np.array(v, float) for name, v in data["fracture"]["prediction"].items()}
+    at = np.isfinite(told["x"])
+    assert np.count_nonzero(~at) == 1  # between the directions
+    c_L = run.info["wave_speeds"]["c_L_m_per_s"]
+    np.testing.assert_allclose(told["x"][at], 1e3 * predicted.x_m, rtol=1e-4)
+    np.testing.assert_allclose(told["at_rest"][at], predicted.G_static_J_per_m2, rtol=1e-4)
+    np.testing.assert_allclose(told["v"][at], predicted.v_tip_m_per_s / c_L, rtol=1e-4)
+
+
+def test_a_page_says_why_nothing_is_predicted(crack):
+    (crack / "checksums.sha256").unlink()
+    case = crack / "case.resolved.toml"
+    case.write_text(case.read_text().replace("slip_weakening", "not_a_law"))
+    text = page_of(crack)
+    assert data_of(text)["runs"][0]["fracture"]["prediction"] is None
+    assert "No prediction: " in text and "not_a_law" in text
+
+
+def test_a_page_of_a_run_that_blew_up_leaves_out_what_is_no_number(crack):
+    (crack / "checksums.sha256").unlink()
+    file = crack / "fracture.csv"
+    lines = file.read_text().splitlines()
+    at = lines[0].split(",").index("breakdown_work_J_per_m2")
+    done = next(k for k, line in enumerate(lines[1:]) if line.split(",")[at + 6] == "1")
+    cells = lines[1 + done].split(",")
+    cells[at] = "inf"
+    file.write_text("\n".join([*lines[: 1 + done], ",".join(cells), *lines[2 + done :]]) + "\n")
+    change_json(crack / "run.json", lambda info: info.update(status="blew_up"))
+    text = page_of(crack)
+    fronts = data_of(text)["runs"][0]["fronts"]
+    gamma = [value for front in sorted(fronts, key=lambda f: f["id"]) for value in front["gamma"]]
+    assert gamma[done] is None and sum(value is not None for value in gamma) > 10
+    assert "No prediction: " in text
+
+
+def test_a_page_without_breakdown_or_of_an_older_run(crack, capsys):
+    (crack / "checksums.sha256").unlink()
+    file = crack / "fracture.csv"
+    head, *rows = file.read_text().splitlines()
+    at = head.split(",").index("breakdown_complete")
+    none = [",".join("0" if k == at else cell for k, cell in enumerate(row.split(","))) for row in rows]
+    file.write_text("\n".join([head, *none]) + "\n")
+    assert "The breakdown of no front that is drawn came to its end." in page_of(crack)
+    capsys.readouterr()
+    file.write_text("\n".join([head, *rows[1:]]) + "\n")
+    assert "its rows are not those of fronts.csv" in refusal(capsys, crack)
+    file.unlink()
+    text = page_of(crack)
+    assert "Γ" not in text and 'href="#fracture"' not in text
 
 
 # What is refused, and what is replaced

@@ -658,6 +658,29 @@ def test_only_speeds_are_taken_for_speeds(tmp_path):
     assert write_results(tmp_path / "older", case, [older])["v_tip_largest_over_c_L"] == 9.0
 
 
+def test_medians_of_a_crack_are_those_beyond_the_trigger_where_its_breakdown_ended(tmp_path):
+    place, zone = tmp_path / "run", '[event]\nkind = "left"\ntrigger_zone_m = 0.1\n'
+    names = (
+        "fracture_energy_median_J_per_m2",
+        "G_slip_over_fracture_energy_median",
+        "cohesive_zone_median_m",
+    )
+    nodes = path(19, 24)  # the first two of them in the zone
+
+    def found():
+        cells = read_outcome(place)
+        return [cells[f"longest_front_{name}"] for name in names]
+
+    write_results(place, zone, [nodes])
+    np.testing.assert_array_equal(found(), [np.nan] * 3)  # of an older program
+    energies, by_slip, zones = [9, 9, 1, 2, 4, 9], ["", "", 3, "", 4, 9], [9, 9, 0.1, 0.2, 0.3, 9]
+    head = "front_id,x_m,breakdown_work_J_per_m2,breakdown_complete,cohesive_zone_m,G_slip_J_per_m2\n"
+    cells = zip(nodes, energies, [1] * 5 + [0], zones, by_slip, strict=True)
+    rows = [f"0,{x:.17g},{gamma},{end},{size},{g}\n" for (x, _, _), gamma, end, size, g in cells]
+    (place / "fracture.csv").write_text(head + "".join(rows))
+    assert found() == [2, 2, 0.2]
+
+
 # --- Printed
 
 

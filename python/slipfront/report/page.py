@@ -23,6 +23,7 @@ SCRIPTS = (
     "space_time.js",
     "profiles.js",
     "criteria.js",
+    "fracture.js",
     "energy.js",
     "snapshots.js",
     "probes.js",

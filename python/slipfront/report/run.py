@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from slipfront.figures.main_fronts import DRAWN_LENGTH_M
-from slipfront.figures.report import front_row, table
+from slipfront.figures.report import formatted, front_row, table
 from slipfront.files import is_number
 from slipfront.folder import UNFINISHED, belongs
-from slipfront.read import STATUSES, Run, entry, read_run
+from slipfront.read import STATUSES, Run, entry, median, read_run
 from slipfront.report import setup
+from slipfront.report.fracture import ENERGIES, Fracture, fracture_data, fracture_of, fracture_section
 from slipfront.report.history import ThinHistory, thin_history
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
 from slipfront.report.probes import probe_data, probes_of, probes_section
@@ -239,14 +240,13 @@ def median_speeds(run: Run) -> dict[int, str]:
     c_L, c_S = (run.info.get("wave_speeds", {}).get(f"{name}_m_per_s") for name in ("c_L", "c_S"))
     told = {}
     for front in run.fronts:
-        v_m_per_s = front.v_tip_m_per_s[np.isfinite(front.v_tip_m_per_s)]
-        if len(v_m_per_s) > 0 and is_number(c_L) and is_number(c_S):
-            median = float(np.median(v_m_per_s))
-            told[front.id] = f"{median / c_L:.2f} c_L, {median / c_S:.2f} c_S"
+        v_m_per_s = median(front.v_tip_m_per_s)
+        if np.isfinite(v_m_per_s) and is_number(c_L) and is_number(c_S):
+            told[front.id] = f"{v_m_per_s / c_L:.2f} c_L, {v_m_per_s / c_S:.2f} c_S"
     return told
 
 
-def fronts_section(run: Run) -> str:
+def fronts_section(run: Run, fracture: Fracture | None) -> str:
     header = [
         "Front",
         "Direction",
@@ -257,9 +257,17 @@ def fronts_section(run: Run) -> str:
         "End",
         "Slip",
         "Median V_tip",
+        *(["Median Γ (J/m²)", "G by slip (J/m²)"] if fracture else []),
     ]
     speeds = median_speeds(run)
-    rows = [[*front_row("", f)[1:], speeds.get(f.get("id"), "–")] for f in run.info.get("fronts", [])]
+    energies = {
+        front: [formatted(median(of[name]), ".3g") for name in ENERGIES]
+        for front, of in (fracture or {}).items()
+    }
+    rows = [
+        [*front_row("", f)[1:], speeds.get(f.get("id"), "–"), *energies.get(f.get("id"), [])]
+        for f in run.info.get("fronts", [])
+    ]
     text = table(header, rows) if rows else "<p>None was found.</p>"
     return section("fronts", "Fronts", "<p>All that were found, short ones too.</p>", text)
 
@@ -275,6 +283,7 @@ PLACES = [
     ("space-time", "Space-time"),
     ("profiles", "t/p at a time"),
     ("criteria", "Front speed"),
+    ("fracture", "G against Γ"),
     ("energy", "Energy"),
     ("snapshots", "Snapshots"),
     ("probes", "Probes"),
@@ -295,23 +304,28 @@ def page(folder: Path, _file: Path) -> Page:
     if probes is not None:
         units = units_of(run)
         data["probes"] = probe_data(probes, units["time"].factor, units["x"].factor, before)
+    fracture = fracture_of(run)
+    data["fracture"] = fracture_data(run, fracture, data["fronts"])
+    missing = {"probes"} if probes is None else set()
+    missing |= {"fracture"} if fracture is None else set()
     snapshots = data["snapshots"]
     title = str(run.info.get("title", "")) or run.name
     return Page(
         title=f"{title}: {run.mark}" if run.mark else title,
         parts=[
-            navigation([place for place in PLACES if place[0] != "probes" or probes is not None]),
+            navigation([place for place in PLACES if place[0] not in missing]),
             section("setup", "Set-up", warnings_of(run), sketch(run), facts_table(setup.rows(run))),
             section("computation", "Computation", facts(run)),
             space_time_section(thinning(history_of(run)), constant),
             profiles_section(history_of(run)),
             criteria_section(data["panels"], data["folded"]),
+            fracture_section(data["fracture"]) if fracture is not None else "",
             energy_section(not data["energy"]["terms"]),
             snapshots_section(
                 has_snapshots(run), frames_words(run), snapshots is not None and snapshots["still"]
             ),
             probes_section(probes, data["probes"], before) if probes is not None else "",
-            fronts_section(run),
+            fronts_section(run, fracture),
         ],
         data={
             "runs": [data],

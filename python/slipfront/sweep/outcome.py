@@ -13,7 +13,7 @@ import numpy as np
 
 from slipfront.files import DataError, is_number, number, read_json_table, read_toml
 from slipfront.folder import result_file
-from slipfront.read import SPEED_KINDS, Front, entry, read_fronts, read_static
+from slipfront.read import SPEED_KINDS, Front, entry, median, ratio, read_fracture, read_fronts, read_static
 
 Cell = float | int | str
 Interval = tuple[float, float]
@@ -48,6 +48,7 @@ class Run:
     info: dict[str, Any]
     file: Path  # run.json
     all_fronts: list[Front]
+    fracture: dict[int, dict[str, np.ndarray]] | None  # of read_fracture
     x_m: np.ndarray  # nodes, ascending
     least_front_m: float  # length below which slip that spreads is no front of its own
     contact_m: Interval  # outermost nodes under pressure before the event
@@ -148,6 +149,11 @@ QUANTITIES = (
     Quantity("longest_front_length_m", "m", "length of the longest front's path beyond the trigger zone"),
     Quantity("longest_front_direction", "1", "direction of the longest front along x, +1 or -1"),
     Quantity("longest_front_start_x_m", "m", "where the longest front starts"),
+    Quantity("longest_front_fracture_energy_median_J_per_m2", "J m-2",
+             "median fracture energy of the longest front, its breakdown work"),
+    Quantity("longest_front_G_slip_over_fracture_energy_median", "1",
+             "median energy release rate by the slip over fracture energy, of the longest front"),
+    Quantity("longest_front_cohesive_zone_median_m", "m", "median cohesive zone of the longest front"),
     Quantity("slipped_length_m", "m", "length beyond the trigger zone that fronts have run over"),
     Quantity("slipped_share", "1", "slipped share beyond the trigger zone"),
     Quantity("reached_ends", "", "ends of the contact that slip has reached without a gap",
@@ -169,6 +175,22 @@ def undefined_or(found: Any) -> float:
     return float(found) if is_number(found) else np.nan
 
 
+def as_a_crack(run: Run, front: Front) -> dict[str, Cell]:
+    """Medians over the nodes beyond the trigger zone where the front's breakdown came to its end."""
+    if run.fracture is None:
+        return {}
+    is_own = np.full(len(front.x_m), True)
+    for from_m, to_m in run.driven_m:
+        is_own &= (front.x_m < from_m) | (front.x_m > to_m)
+    own = {name: values[is_own] for name, values in run.fracture[front.id].items()}
+    energy = own["breakdown_work_J_per_m2"]
+    return {
+        "longest_front_fracture_energy_median_J_per_m2": median(energy),
+        "longest_front_G_slip_over_fracture_energy_median": median(ratio(own["G_slip_J_per_m2"], energy)),
+        "longest_front_cohesive_zone_median_m": median(own["cohesive_zone_m"]),
+    }
+
+
 def of_longest(run: Run) -> dict[str, Cell]:
     """What there is without a front, and of the longest one."""
     front = run.longest
@@ -181,6 +203,7 @@ def of_longest(run: Run) -> dict[str, Cell]:
         "longest_front_length_m": run.length_m(front),
         "longest_front_direction": front.direction,
         "longest_front_start_x_m": float(front.x_m[0]),
+        **as_a_crack(run, front),
     }
     if len(speeds):
         measured["longest_front_v_tip_largest_over_c_L"] = float(speeds.max())
@@ -267,10 +290,12 @@ def read_run(place: Path) -> Run:
     file = place / "case.resolved.toml"
     case, static = read_toml(result_file(file)), read_static(place / "static.csv")
     contact_m = contact_of(static, place / "static.csv")
+    fronts = read_fronts(place / "fronts.csv")
     return Run(
         info=read_json_table(result_file(place / "run.json")),
         file=place / "run.json",
-        all_fronts=read_fronts(place / "fronts.csv"),
+        all_fronts=fronts,
+        fracture=read_fracture(place / "fracture.csv", fronts),
         x_m=static["x_m"],
         least_front_m=number(file, case, "fronts.min_length_m"),
         contact_m=contact_m,

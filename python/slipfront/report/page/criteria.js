@@ -10,7 +10,7 @@ let unfolded = !data.folded;
 
 /** Those of the page that are shown now. */
 const panelsNow = () => (data.panels ?? []).slice(0, unfolded ? undefined : 1)
-  .map((measure, k) => ({measure, axis: k === 0 ? '' : String(k + 1), label: LABELS[measure]}));
+  .map((measure, k) => ({measure, value: 'v', axis: k === 0 ? '' : String(k + 1), label: LABELS[measure]}));
 const PALE = 0.22;
 let pinned = false;
 
@@ -21,7 +21,7 @@ const everyFront = data.runs.flatMap((run) => run.fronts.map((_, front) => ({run
 function pointsOf({run, front}, panel, isFirst) {
   const f = run.fronts[front];
   return {
-    type: 'scatter', mode: 'markers', name: run.name ? `${run.name}: ${f.label}` : f.label, x: f[panel.measure], y: f.v,
+    type: 'scatter', mode: 'markers', name: run.name ? `${run.name}: ${f.label}` : f.label, x: f[panel.measure], y: f[panel.value],
     xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, legendgroup: `${run.name}:${f.id}`, showlegend: isFirst,
     marker: {color: f.colour, symbol: f.symbol, size: f.main ? 5 : 4, opacity: f.counts.map((c) => (c ? 0.9 : PALE))},
     selected: {marker: {opacity: 1, size: 9}}, unselected: {marker: {opacity: 0.08}},
@@ -29,26 +29,27 @@ function pointsOf({run, front}, panel, isFirst) {
   };
 }
 
+function lineIn(panel, name, x, y, line, more) {
+  return {type: 'scatter', mode: 'lines', name, x, y, xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, line,
+    hoverinfo: 'skip', ...more};
+}
+
 function waveLevels(run, panel, isFirst) {
-  return run.waves.filter((wave) => wave.over_c_L <= topSpeed()).map((wave) => ({
-    type: 'scatter', mode: 'lines', name: waveName(wave.name), x: [-1e6, 1e6], y: [wave.over_c_L, wave.over_c_L],
-    xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, legendgroup: wave.name, showlegend: isFirst, hoverinfo: 'skip',
-    line: {color: waveColour(wave.name, '#555'), width: 1, dash: WAVE_DASHES[wave.name]},
-  }));
+  return run.waves.filter((wave) => wave.over_c_L <= topSpeed()).map(({name, over_c_L}) =>
+    lineIn(panel, waveName(name), [-1e6, 1e6], [over_c_L, over_c_L],
+      {color: waveColour(name, '#555'), width: 1, dash: WAVE_DASHES[name]}, {legendgroup: name, showlegend: isFirst}));
 }
 
 /** The paper's law and others of its form, where the page has them: V/c_L = a + b exp(-c sqrt(rise)). */
 function fitCurves(panel) {
   if (panel.measure !== 'rise') return [];
   const r = Array.from({length: 200}, (_, k) => 5 * (k / 199) ** 2);
-  return (data.fits ?? []).map(({name, a, b, c, colour, dash}) => ({
-    type: 'scatter', mode: 'lines', name, x: r, y: r.map((v) => a + b * Math.exp(-c * Math.sqrt(v))),
-    xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, line: {color: colour, dash, width: 2}, hoverinfo: 'skip',
-  }));
+  return (data.fits ?? []).map(({name, a, b, c, colour, dash}) =>
+    lineIn(panel, name, r, r.map((v) => a + b * Math.exp(-c * Math.sqrt(v))), {color: colour, dash, width: 2}));
 }
 
 function panelMark(panel) {
-  return {...mark, xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, meta: {mark: panel.measure}};
+  return {...mark, xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, meta: {mark: panel}};
 }
 
 const countedValues = (measure) => everyFront.flatMap(({run, front}) => {
@@ -98,20 +99,38 @@ function pointWords(run, front, point) {
   const inMetres = speed === null ? '–' : `${shown(speed * run.waves[0].m_per_s)} m/s = ${shown(speed)} c_L`;
   return `${run.name ? `${run.name}, ` : ''}${f.label}: x = ${shown(f.x[point])} ${run.units.x} at ` +
     `t = ${shown(f.time[point])} ${run.units.time}; V_tip = ${inMetres}; t_s/p_s = ${shown(f.static[point])}, ` +
-    `t_d/p_d = ${shown(f.dynamic[point])}, (U_r − U_s)/U_s = ${shown(f.rise[point])}`;
+    `t_d/p_d = ${shown(f.dynamic[point])}, (U_r − U_s)/U_s = ${shown(f.rise[point])}` +
+    (f.gamma ? `; Γ = ${shown(f.gamma[point])} J/m², G by slip = ${shown(f.g_slip[point])} J/m²` : '');
 }
 
 /** Marks a node of a front in every panel and in the diagram over space and time. */
 function highlight(run, front, point) {
-  const plot = byId('criteria-plot');
-  if (!plot?.data || pinned) return;
+  const plots = ['criteria-plot', 'fracture-plot'].map(byId).filter((plot) => plot?.data);
+  if (plots.length === 0 || pinned) return;
   const f = run.fronts[front];
-  const marks = plot.data.map((trace, k) => [trace.meta?.mark, k]).filter(([measure]) => measure);
-  const places = marks.map(([measure]) => (f[measure][point] === null || f.v[point] === null ? null : f[measure][point]));
-  Plotly.restyle(plot, {x: places.map((x) => (x === null ? [] : [x])), y: places.map((x) => (x === null ? [] : [f.v[point]]))},
-    marks.map(([, k]) => k));
-  byId('criteria-point').textContent = pointWords(run, front, point);
+  for (const plot of plots) {
+    const marks = plot.data.map((trace, k) => [trace.meta?.mark, k]).filter(([panel]) => panel);
+    const places = marks.map(([{measure, value}]) => [f[measure][point], f[value][point]])
+      .map((place) => (place.includes(null) ? [[], []] : place.map((v) => [v])));
+    Plotly.restyle(plot, {x: places.map(([x]) => x), y: places.map(([, y]) => y)}, marks.map(([, k]) => k));
+  }
+  for (const readout of document.querySelectorAll('.readout')) readout.textContent = pointWords(run, front, point);
   markSpaceTime(run, front, point);
+}
+
+/** Nodes that are pointed at or clicked in a plot are marked. */
+function startMarking(plot) {
+  const mark = ({points}) => {
+    const point = points.find(({data: {meta}}) => meta?.front !== undefined);
+    if (point) highlight(data.runs[point.data.meta.run], point.data.meta.front, point.pointNumber);
+    return Boolean(point);
+  };
+  plot.on('plotly_hover', mark);
+  plot.on('plotly_click', (event) => {
+    pinned = false;
+    pinned = mark(event);
+  });
+  plot.on('plotly_doubleclick', () => { pinned = false; });
 }
 
 /** The points that were selected in one panel are selected in all; null: none is. */
@@ -134,18 +153,7 @@ function startCriteria() {
   });
   const drawn = drawCriteria();
   const plot = byId('criteria-plot');
-  const ofFront = (points) => points.find((point) => point.data.meta?.front !== undefined);
-  plot.on('plotly_hover', ({points}) => {
-    const point = ofFront(points);
-    if (point) highlight(data.runs[point.data.meta.run], point.data.meta.front, point.pointNumber);
-  });
-  plot.on('plotly_click', ({points}) => {
-    const point = ofFront(points);
-    pinned = false;
-    if (point) highlight(data.runs[point.data.meta.run], point.data.meta.front, point.pointNumber);
-    pinned = Boolean(point);
-  });
-  plot.on('plotly_doubleclick', () => { pinned = false; });
+  startMarking(plot);
   plot.on('plotly_selected', (event) => selectEverywhere(event?.points ?? null));
   plot.on('plotly_deselect', () => selectEverywhere(null));
   return drawn;

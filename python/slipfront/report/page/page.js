@@ -15,7 +15,7 @@ function startRuns() {
 
 async function start() {
   startRuns();
-  await Promise.all([startSpaceTime(), startProfiles(), startCriteria(), drawEnergy(), startSnapshots(), startProbes()]);
+  await Promise.all([startSpaceTime(), startProfiles(), startCriteria(), startFracture(), drawEnergy(), startSnapshots(), startProbes()]);
   document.body.dataset.drawn = 'all';
 }
 
