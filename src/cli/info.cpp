@@ -155,7 +155,8 @@ void add_cracks(const input::Case& config, Listing& list) {
                   : "none runs from there, however long";
   for (const auto& front : of.fronts)
     if (front.end == fracture::PredictedEnd::arrest)
-      text += fmt::format("; arrests at {:.4g} m", front.points.back().x_m);
+      text += fmt::format("; to {}x it arrests at {:.4g} m", front.direction > 0 ? '+' : '-',
+                          front.points.back().x_m);
   list.add("fronts as cracks", text);
 }
 

@@ -13,9 +13,12 @@ namespace slipfront::interface {
 
 namespace {
 
-/// A breakdown has ended where slip has gone on by this share without a fall of the coefficient that counts.
-constexpr double more_slip = 1.25;
-constexpr double fall_that_counts = 1e-3;  ///< of the one so far
+/// A breakdown has ended where slip has doubled without a fall of the coefficient that counts, or the
+/// coefficient has risen by half of its fall. Before, it has to have come down by some share of its peak:
+/// friction that depends on the slip rate goes up and down where slip begins.
+constexpr double more_slip = 2, rise_that_ends = 0.5;
+constexpr double fall_before_slip_ends = 0.01, fall_before_rise_ends = 0.1;  ///< over the peak
+constexpr double fall_that_counts = 1e-3;                                    ///< of the one so far
 
 /// On which the coefficient acts.
 double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i) {
@@ -68,14 +71,17 @@ void follow(const ContactModel& model, double dt_s, double v_before_m_per_s, Int
     b.work_J_per_m2[i] = b.work_of_t_J_per_m2[i] - coefficient * b.work_of_p_J_per_m2[i];
     b.impulse_Pa_s[i] = b.impulse_of_t_Pa_s[i] - coefficient * b.impulse_of_p_Pa_s[i];
   }
-  const double fall = b.peak_coefficient[i] - coefficient;
+  const double peak = b.peak_coefficient[i], fall = peak - coefficient;
+  const double largest_fall = peak - b.least_coefficient[i];
   if (b.counted_coefficient[i] - coefficient > fall_that_counts * fall) {
     b.counted_coefficient[i] = coefficient;
     b.counted_slip_m[i] = b.slip_m[i];
-  } else if (b.least_coefficient[i] < b.peak_coefficient[i] &&
-             b.slip_m[i] > more_slip * b.counted_slip_m[i]) {
-    end_breakdown(s, i);
   }
+  const bool slip_ends =
+      b.slip_m[i] > more_slip * b.counted_slip_m[i] && largest_fall > fall_before_slip_ends * peak;
+  const bool rise_ends =
+      largest_fall - fall > rise_that_ends * largest_fall && largest_fall > fall_before_rise_ends * peak;
+  if (slip_ends || rise_ends) end_breakdown(s, i);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace slipfront::record {
 /// [nodes]
 ///
 /// The residual coefficient is the least (|t| - cohesion)/p from the beginning of slip on, until slip has
-/// gone on by a quarter without a fall that counts, of 0.1 % of the one so far. Residual traction is the
-/// cohesion and the residual coefficient times p, at each time.
+/// doubled without a fall that counts, of 0.1 % of the one so far, or the coefficient has risen by half of
+/// its fall. Residual traction is the cohesion and the residual coefficient times p, at each time.
 struct Breakdown {
   std::vector<double> work_J_per_m2, peak_t_Pa, residual_t_Pa, residual_coefficient, distance_m, time_s;
   /// 1 where the breakdown came to its end, 0 where it was under way when the event ended. [nodes]

@@ -117,6 +117,9 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
     const auto away = [&](double node_x) { return std::abs(node_x - x); };
     return static_cast<std::size_t>(std::ranges::min_element(p.x_m, {}, away) - p.x_m.begin());
   };
+  if (x_m && !(*x_m >= p.x_m.front() && *x_m <= p.x_m.back()))
+    throw UserError("{} is {:g} m; the interface goes from {:g} to {:g} m", for_caller("--x", "at_x_m"), *x_m,
+                    p.x_m.front(), p.x_m.back());
   if (x_m) return {nearest(*x_m), nearest(*x_m)};
   if (interface::is_at_edge(config.event)) {
     const auto zone = motion::trigger_zone(initial.common, config.event, config.trigger.zone_m);

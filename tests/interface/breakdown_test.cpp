@@ -97,7 +97,7 @@ TEST(Breakdown, PressureThatFallsIsNoBreakdown) {
 TEST(Breakdown, ExponentialWeakeningHasNoEndOfItsOwn) {
   const ExponentialSlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 1e-6};
   const auto mu = [](double, double slip) { return 0.4 + 0.2 * std::exp(-slip / 1e-6); };
-  const auto found = passed(law, mu, 100000).found();
+  const auto found = passed(law, mu, 400000).found();
   EXPECT_NEAR(found.work_J_per_m2[1], 0.2 * p_Pa * 1e-6, 5e-3);
   EXPECT_EQ(found.complete[1], 1);
 }

@@ -210,6 +210,7 @@ def test_a_law_without_a_length_has_no_fracture_energy(tmp_path):
         ({"fracture_energy_J_per_m2": ([0.0, 0.1], [1.0])}, "2 places and 1 values"),
         ({"residual_coefficient": np.nan}, "must be finite"),
         ({"at_x_m": np.inf}, "must be finite"),
+        ({"at_x_m": 0.31}, "at_x_m is 0.31 m; the interface goes from 0 to 0.3 m"),
     ],
 )
 def test_options_refused(options, said):
