@@ -22,6 +22,10 @@ from slipfront.units import attributes
 AlongX = float | tuple[ArrayLike, ArrayLike]
 
 
+#: Columns of fracture.csv that a prediction by a run takes.
+MEASURED = ("breakdown_work_J_per_m2", "residual_coefficient", "breakdown_complete")
+
+
 def along_x(given: AlongX | None, name: str, *, above: float | None) -> tuple[np.ndarray, np.ndarray]:
     """Places and values; no values where nothing is given."""
     if given is None:
@@ -42,7 +46,12 @@ def along_x(given: AlongX | None, name: str, *, above: float | None) -> tuple[np
 def measured_friction(run: OpenRun) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places, breakdown work and residual coefficient where a front's breakdown came to its end."""
     table = run.fracture
+    numeric = all(name in table and table[name].dtype.kind == "f" for name in MEASURED)
+    if not numeric:
+        raise CaseError(f"{run.folder}: no fracture.csv with numbers of {', '.join(MEASURED)}")
     done = table["breakdown_complete"].to_numpy() == 1
+    for name in MEASURED[:2]:
+        done &= np.isfinite(table[name].to_numpy())
     if not done.any():
         raise CaseError(f"{run.folder}: no front's breakdown came to its end")
     x_m, first = np.unique(table["x_m"].to_numpy()[done], return_index=True)

@@ -34,6 +34,8 @@ constexpr std::string_view mark = "# fronts by slipfront fracture\n";
 /// @throws UserError where anything but such a table is there
 void require_own(const std::filesystem::path& file) {
   if (!files::is_there(file)) return;
+  if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
+    throw UserError("{}: is no regular file: not replaced; give another name with -o", file.string());
   std::string beginning(mark.size(), ' ');
   std::ifstream stream(file, std::ios::binary);
   stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
@@ -52,7 +54,7 @@ std::string csv(const fracture::Prediction& prediction) {
       text += fmt::format("{}", front.direction);
       for (const auto& column : fracture::predicted_fields) {
         const double value = point.*column.member;
-        text += std::isnan(value) ? "," : fmt::format(",{}", value);
+        text += !std::isfinite(value) ? "," : fmt::format(",{}", value);
       }
       text += "\n";
     }
@@ -88,8 +90,10 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
   const double c_S = solid::shear_speed_m_per_s(config.material);
   std::string text = fmt::format("statics of {}, {} nodes on the interface\n", p.bodies, p.x_m.size());
   text += fmt::format("first crack {:.4g} m: {}\n", of.first_length_m,
-                      of.starts ? "it runs" : "its energy release rate is below the fracture energy");
-  if (!of.starts)
+                      of.starts      ? "it runs"
+                      : p.covers_all ? "the whole interface"
+                                     : "its energy release rate is below the fracture energy");
+  if (!of.starts && !p.covers_all)
     text += std::isnan(of.critical_length_m)
                 ? "no crack from there runs, however long\n"
                 : fmt::format("critical crack {:.4g} m: from this length on it runs\n", of.critical_length_m);

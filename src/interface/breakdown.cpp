@@ -118,7 +118,7 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
     put(of.residual_coefficient, b.least_coefficient[i]);
     put(of.distance_m, fall_Pa > 0 ? 2 * b.work_J_per_m2[i] / fall_Pa : nan);
     put(of.time_s, fall_Pa > 0 ? 2 * b.impulse_Pa_s[i] / fall_Pa : nan);
-    of.complete.push_back(begun ? s.broken[i] : 0);
+    of.complete.push_back(begun && b.work_J_per_m2[i] > 0 && b.impulse_Pa_s[i] > 0 ? s.broken[i] : 0);
   }
   return of;
 }

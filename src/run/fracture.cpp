@@ -23,7 +23,9 @@ namespace slipfront::run {
 namespace {
 
 /// Most elements along the interface: with a dense stiffness of the sample, and with kernels.
-constexpr double most_of_sample = 500, most_of_half_spaces = 1000;
+constexpr double most_of_sample = 500, most_of_half_spaces = 2000;
+/// Elements over the height of half-spaces, whose bodies do not matter.
+constexpr double rows_of_half_spaces = 32;
 
 /// Whether the sample's edges enter: where its far edges are held.
 bool is_held(const input::Case& config) {
@@ -31,23 +33,23 @@ bool is_held(const input::Case& config) {
          (!input::has_base_body(config) || config.base.plate.top == mesh::Top::loaded);
 }
 
-/// The case in larger elements where it has more than `most` along the interface; others are left.
+/// The case in larger elements where it has more than `most` along the interface. Heights become whole
+/// multiples.
 input::Case in_fewer_elements(input::Case config, double most) {
   auto& plate = config.plate;
-  const double h = plate.element_size_m;
-  const double columns = std::round(plate.width_m / h);
-  if (columns <= most) return config;
-  const auto fits = [&](double factor) {
-    const auto divides = [&](double length_m) { return std::fmod(std::round(length_m / h), factor) == 0; };
-    return divides(plate.width_m) && divides(plate.height_m) &&
-           (!input::has_base_body(config) || divides(config.base.plate.height_m));
+  const double columns = std::round(plate.width_m / plate.element_size_m);
+  const double h = plate.width_m / std::min(columns, most);
+  const auto fit = [&](mesh::Plate& body) {
+    const double rows = is_held(config) ? std::max(1.0, std::round(body.height_m / h)) : rows_of_half_spaces;
+    body.height_m = rows * h;
+    body.coarsenings = 0;
   };
-  double factor = std::ceil(columns / most);
-  while (!fits(factor) && factor < columns) ++factor;
-  plate.element_size_m = h * factor;
-  plate.coarsenings = config.base.plate.coarsenings = 0;
-  if (plate.corner != mesh::Corner::none && plate.relief_height_m < 2 * plate.element_size_m)
-    plate.corner = mesh::Corner::none;
+  if (columns <= most && is_held(config)) return config;
+  plate.element_size_m = h;
+  fit(plate);
+  if (input::has_base_body(config)) fit(config.base.plate);
+  if (plate.corner != mesh::Corner::none && columns > most) plate.corner = mesh::Corner::none;
+  config.time.interface_rows = 1;
   return config;
 }
 
@@ -77,6 +79,10 @@ double at(const std::vector<double>& x_m, const std::vector<double>& values, dou
 void add_friction(const input::Case& config, const TipFriction& given, const statics::Equilibrium& state,
                   FracturePrediction& p, fracture::CrackLoads& loads) {
   const auto laws = input::friction_at(config, p.x_m);
+  for (const double c : given.residual_coefficient)
+    if (!(c >= 0 && c <= 100))
+      throw UserError("{} is {:g}; it must be from 0 to 100",
+                      for_caller("--residual-coefficient", "residual_coefficient"), c);
   const bool knows_pressure = config.regularisation.relaxed != interface::Relaxed::initial_pressure;
   for (std::size_t k = 0; k < p.x_m.size(); ++k) {
     const auto& law = laws.empty() ? config.friction : laws[k];
@@ -87,7 +93,8 @@ void add_friction(const input::Case& config, const TipFriction& given, const sta
       if (!slip_m)
         throw UserError("{} = \"{}\" has no fracture energy of its own; give it by {}", Key("friction.law"),
                         law.name(), for_caller("--fracture-energy", "fracture_energy_J_per_m2"));
-      p.fracture_energy_J_per_m2.push_back(0.5 * (mu_s - mu_k) * p_Pa * *slip_m);
+      // Friction that does not weaken takes no end of energy.
+      p.fracture_energy_J_per_m2.push_back(mu_s > mu_k ? 0.5 * (mu_s - mu_k) * p_Pa * *slip_m : infinity);
     } else {
       p.fracture_energy_J_per_m2.push_back(at(given.x_m, given.fracture_energy_J_per_m2, p.x_m[k]));
     }
@@ -133,6 +140,41 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
   return {nearest(peak_x_m), nearest(peak_x_m)};
 }
 
+/// What the prediction leaves out.
+void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
+               const statics::Equilibrium& state, FracturePrediction& p) {
+  const auto absorbs = [](const mesh::Plate& plate) {
+    return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
+  };
+  if (!is_held(config) &&
+      !(absorbs(config.plate) && (!input::has_base_body(config) || absorbs(config.base.plate))))
+    p.notes.emplace_back(
+        "edges are left out, the crack is one between half-spaces: of samples with both far edges held alone "
+        "they are taken in");
+  if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
+    p.notes.emplace_back("absorbing sides count as free ones");
+  if (config.regularisation.relaxed != interface::Relaxed::initial_pressure && !stability::are_alike(bodies))
+    p.notes.emplace_back("slip changes the pressure, which speeds leave out");
+  if (const double factor = config.plate.element_size_m / given.plate.element_size_m; factor > 1.01)
+    p.notes.push_back(
+        fmt::format("elements are {:.3g} times those of the case, {:.3g} m: what is shorter is smeared",
+                    factor, config.plate.element_size_m));
+  if (config.plate.sides == mesh::Sides::periodic)
+    p.notes.emplace_back("periodic sides count as ends of the contact");
+  if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
+  const auto laws = input::friction_at(config, p.x_m);
+  std::size_t n_beyond = 0;
+  for (std::size_t k = 0; k < p.x_m.size(); ++k) {
+    const auto& law = laws.empty() ? config.friction : laws[k];
+    n_beyond +=
+        std::abs(state.tractions.t_s_Pa[k]) > interface::static_strength_Pa(law, state.tractions.p_s_Pa[k]);
+  }
+  if (2 * n_beyond > p.x_m.size())
+    p.notes.push_back(
+        fmt::format("t is beyond the strength at {} of {} nodes: they slip at once, without a front",
+                    n_beyond, p.x_m.size()));
+}
+
 }  // namespace
 
 FracturePrediction predict_fronts(const input::Case& given, const TipFriction& friction,
@@ -161,20 +203,10 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
     response.p_per_slip *= -1;
   }
   const auto patch = first_crack(config, initial, p, x_m);
+  p.covers_all = patch.first == 0 && patch.last + 1 == p.x_m.size();
   p.of_fronts = fracture::predict(response, loads, p.fracture_energy_J_per_m2, patch.first, patch.last,
                                   fracture::SpeedLaw(bodies));
-  const auto absorbs = [](const mesh::Plate& plate) {
-    return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
-  };
-  if (!is_held(config) &&
-      !(absorbs(config.plate) && (!input::has_base_body(config) || absorbs(config.base.plate))))
-    p.notes.emplace_back(
-        "edges are left out, the crack is one between half-spaces: of samples with both far edges held alone "
-        "they are taken in");
-  if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
-    p.notes.emplace_back("absorbing sides count as free ones");
-  if (config.regularisation.relaxed != interface::Relaxed::initial_pressure && !stability::are_alike(bodies))
-    p.notes.emplace_back("slip changes the pressure, which speeds leave out");
+  add_notes(given, config, bodies, initial.common, p);
   return p;
 }
 

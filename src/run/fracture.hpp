@@ -23,6 +23,7 @@ struct FracturePrediction {
   std::vector<double> x_m, t_Pa, p_Pa, fracture_energy_J_per_m2,
       residual_coefficient;  ///< [nodes] before the event
   double element_size_m = 0;
+  bool covers_all = false;         ///< the first crack is the whole interface
   std::string bodies;              ///< whose static response it is, in words
   std::vector<std::string> notes;  ///< what it leaves out, a line each
 };

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int most_coarsenings = 2;  // a third gains little: docs/mesh.md
 constexpr double max_columns = 1e6;
+constexpr int most_tries = 64;  // each makes an interface
 
 /// Elements in a process zone of this length.
 double needed_elements(const input::Case& config, const RuptureOutlook& rupture) {
@@ -64,10 +65,12 @@ std::optional<MeshChoice> cheapest_mesh(const input::Case& config, const Rupture
     auto choice = config;
     coarsen(choice.plate, coarsenings);
     coarsen(choice.base.plate, coarsenings);
+    int tries = 0;
     for (double columns = multiple * std::ceil(least / multiple * (1 - 1e-9));
          columns <= std::min(max_columns, 2 * least + 100); columns += multiple) {
       choice.plate.element_size_m = width_m / columns;
       if (!is_whole(config.plate.height_m / choice.plate.element_size_m)) continue;
+      if (++tries > most_tries) break;
       if (const auto n = n_nodes(choice))
         return MeshChoice{choice.plate.element_size_m, coarsenings, zone_m / choice.plate.element_size_m, *n};
     }

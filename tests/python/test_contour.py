@@ -36,6 +36,7 @@ AT_S = 40e-6
 PLAIN = {"law": "slip_weakening", "mu_s": 0.6, "mu_k": 0.4, "d_c_m": 2.2e-6}
 RIGID = {name: table for name, table in CASE.items() if name != "base"} | {
     "friction": PLAIN,
+    "time": {"end_s": 60e-6},
     "output": CASE["output"] | {"history_interval_s": 3e-6},  # p is found between rows, which the tip passes
     "nucleation": {"x_m": 0.05, "half_length_m": 0.02, "taper_m": 0.005},
 }
