@@ -80,10 +80,12 @@ class Gauge:
             values = {name: v - v[inside].mean() for name, v in values.items()}
         if low_pass_Hz is not None:
             cut_off = number(low_pass_Hz, "low_pass_Hz", above=0, finite=True)
-            highest = 0.5 * (len(time_s) - 1) / (time_s[-1] - time_s[0])
-            if cut_off > highest:
+            lowest = 1 / (time_s[-1] - time_s[0])
+            highest = 0.5 * (len(time_s) - 1) * lowest
+            if not lowest <= cut_off <= highest:
                 raise CaseError(
-                    f"low_pass_Hz is {cut_off:g}; the record of {self.name} ends at {highest:.4g} Hz"
+                    f"low_pass_Hz is {cut_off:g}; the record of {self.name} has {lowest:.4g} to "
+                    f"{highest:.4g} Hz"
                 )
             own_s = np.sqrt(np.log(2)) / (2 * np.pi * cut_off)
             time_s, values = filtered(time_s, values, own_s)
