@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import os
 import re
 
 import numpy as np
@@ -146,6 +147,8 @@ def test_the_program_replaces_no_other_file(tmp_path):
         == "mine.csv: is there and not a table of slipfront fracture: not replaced; give another name with -o"
     )
     assert (tmp_path / "mine.csv").read_text() == "direction,x_m\n"
+    os.mkfifo(tmp_path / "pipe")
+    assert "pipe: is no regular file" in refusal(program("fracture", "case.toml", "-o", "pipe", cwd=tmp_path))
     for _ in range(2):
         require_done(program("fracture", "case.toml", "-o", "fronts.csv", cwd=tmp_path))
 
@@ -166,6 +169,52 @@ def test_a_short_crack_waits():
     assert predicted.attrs["critical_length_m"] == pytest.approx(
         2 * 5.6e9 * GAMMA / (np.pi * 0.35e6**2), abs=0.5e-3
     )
+
+
+def test_friction_that_does_not_weaken_is_a_barrier():
+    case = CASE.replace("mu_s = 0.6", "mu_s = 0.4").replace('form = "weakened"', 'form = "overstress"')
+    predicted = slipfront.predict_fronts(case, prestress={"t_Pa": 2.1e6})
+    assert not predicted.attrs["starts"] and np.isnan(predicted.attrs["critical_length_m"])
+
+
+@pytest.mark.parametrize("width_m", [2.0065, 4.0])
+def test_a_long_interface_has_larger_elements_and_says_so(width_m):
+    """Whatever divides it."""
+    predicted = slipfront.predict_fronts(CASE, plate={"width_m": width_m}, nucleation={"x_m": width_m / 2})
+    assert predicted.attrs["starts"]
+    assert ["what is shorter is smeared" in note for note in predicted.attrs["notes"]] == [True]
+    assert predicted.attrs["first_length_m"] == pytest.approx(0.036, abs=3e-3)
+
+
+@pytest.mark.parametrize(
+    "changes, note",
+    [
+        ({"plate.sides": "periodic", "base.sides": "periodic"}, "periodic sides count as ends"),
+        ({"prestress.t_rate_Pa_per_s": 1e9}, "count as at the start"),
+        ({"prestress.t_Pa": 3.1e6}, "t is beyond the strength at 601 of 601 nodes"),
+        ({"plate.top": "free"}, "edges are left out"),
+    ],
+)
+def test_what_it_leaves_out_is_noted(changes, note):
+    notes = slipfront.predict_fronts(CASE, changes).attrs["notes"]
+    assert any(note in each for each in notes)
+
+
+def test_a_patch_may_be_the_whole_interface(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE.replace("half_length_m = 16e-3", "half_length_m = 0.2"))
+    said = require_done(program("fracture", "case.toml", cwd=tmp_path)).stdout
+    assert said.endswith("first crack 0.3005 m: the whole interface\n")
+
+
+def test_a_run_without_the_table_predicts_nothing(tmp_path):
+    old = slipfront.run(CASE, {"time.end_s": 2e-6}, output=tmp_path / "out", progress=False)
+    listed = tmp_path / "out/checksums.sha256"
+    listed.write_text("".join(line for line in listed.open() if "fracture.csv" not in line))
+    (tmp_path / "out/fracture.csv").unlink()
+    old = slipfront.open(tmp_path / "out")
+    assert len(old.fracture) == 0
+    with pytest.raises(slipfront.CaseError, match="no fracture.csv with numbers"):
+        slipfront.predict_fronts(old)
 
 
 def test_info_tells_cracks_in_short(tmp_path):
@@ -210,6 +259,8 @@ def test_a_law_without_a_length_has_no_fracture_energy(tmp_path):
         ({"fracture_energy_J_per_m2": ([0.0, 0.1], [1.0])}, "2 places and 1 values"),
         ({"residual_coefficient": np.nan}, "must be finite"),
         ({"at_x_m": np.inf}, "must be finite"),
+        ({"residual_coefficient": -0.1}, "it must be from 0 to 100"),
+        ({"residual_coefficient": 1e300}, "it must be from 0 to 100"),
         ({"at_x_m": 0.31}, "at_x_m is 0.31 m; the interface goes from 0 to 0.3 m"),
     ],
 )
