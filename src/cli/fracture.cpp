@@ -69,6 +69,8 @@ std::string line_of(const fracture::PredictedFront& front, double c_S) {
       fmt::format("front to {}x: from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
                   front.direction > 0 ? '+' : '-', front.points.front().x_m, fastest, fastest / c_S);
   if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
+  if (std::isinf(last.fracture_energy_J_per_m2))
+    return runs + fmt::format("arrests at {:.4f} m, where friction does not weaken\n", last.x_m);
   return runs +
          fmt::format("arrests at {:.4f} m: G {:.3g} J/m2, {:.2g} % short of the fracture energy {:.3g}\n",
                      last.x_m, last.G_static_J_per_m2,

@@ -112,6 +112,28 @@ std::optional<StateResponse> state_response(const FrictionLaw& law, double speed
   });
 }
 
+std::optional<StateBreakdown> state_breakdown(const FrictionLaw& law, double t_Pa, double p_Pa,
+                                              double speed_m_per_s) {
+  return visit(law, [&]<class Law>(const Law& l) -> std::optional<StateBreakdown> {
+    if constexpr (!HasState<Law>)
+      return {};
+    else {
+      const auto evaluator = l.evaluator();
+      const double steady = evaluator.steady_state(speed_m_per_s), first = l.state_before(t_Pa, p_Pa);
+      constexpr double part_of_d_c = 0.01, rest = 1e-4;
+      constexpr int most_steps = 1'000'000;
+      const double slip_m = part_of_d_c * l.d_c_m;
+      double psi = first, energy_m = 0;
+      for (int k = 0; k < most_steps && psi - steady > rest * (first - steady); ++k) {
+        const double next = evaluator.evolved(psi, speed_m_per_s, slip_m / speed_m_per_s);
+        energy_m += (0.5 * (psi + next) - steady) * slip_m;
+        psi = next;
+      }
+      return StateBreakdown{energy_m, evaluator.steady_coefficient(speed_m_per_s)};
+    }
+  });
+}
+
 double traction_before_Pa(const FrictionLaw& law, double p_Pa) {
   return visit(law, [&]<class Law>(const Law& l) {
     if constexpr (HasState<Law>) return l.traction_before_Pa(p_Pa);

@@ -150,6 +150,15 @@ struct StateResponse {
 };
 /// At a slip rate, at V_i where that is faster; none for laws without a state.
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s);
+/// What friction of a law with a state does behind a tip that slips at a constant rate: psi falls from what t
+/// and p have made of it before the event to that of steady sliding.
+struct StateBreakdown {
+  double energy_over_pressure_m;  ///< int (mu - residual coefficient) d slip
+  double residual_coefficient;    ///< of steady sliding
+};
+/// None for laws without states.
+std::optional<StateBreakdown> state_breakdown(const FrictionLaw& law, double t_Pa, double p_Pa,
+                                              double speed_m_per_s);
 /// t before the event under p, of a law with a state, where it is not given.
 double traction_before_Pa(const FrictionLaw& law, double p_Pa);
 /// Gives a law with a state whose theta_i is given the V_i that follows from t and p; leaves others as they

@@ -75,6 +75,26 @@ double at(const std::vector<double>& x_m, const std::vector<double>& values, dou
   return record::between(values[k - 1], values[k], (x - x_m[k - 1]) / (x_m[k] - x_m[k - 1]));
 }
 
+/// At which laws with a state weaken behind a tip.
+constexpr double slip_rate_at_tip_m_per_s = 1;
+
+/// Infinite of friction that does not weaken.
+double fracture_energy_J_per_m2(const interface::FrictionLaw& law,
+                                const std::optional<interface::StateBreakdown>& of_state, double p_Pa) {
+  double over_pressure_m = 0;
+  if (of_state) {
+    over_pressure_m = of_state->energy_over_pressure_m;
+  } else {
+    const auto slip_m = interface::weakening_slip_m(law);
+    if (!slip_m)
+      throw UserError("{} = \"{}\" has no fracture energy of its own; give it by {}", Key("friction.law"),
+                      law.name(), for_caller("--fracture-energy", "fracture_energy_J_per_m2"));
+    over_pressure_m =
+        0.5 * *slip_m * (interface::static_coefficient(law) - interface::kinetic_coefficient(law));
+  }
+  return over_pressure_m > 0 ? over_pressure_m * p_Pa : infinity;
+}
+
 /// Fills in what friction does behind a tip, and the tractions before it, in the direction of the load.
 void add_friction(const input::Case& config, const TipFriction& given, const statics::Equilibrium& state,
                   FracturePrediction& p, fracture::CrackLoads& loads) {
@@ -87,19 +107,15 @@ void add_friction(const input::Case& config, const TipFriction& given, const sta
   for (std::size_t k = 0; k < p.x_m.size(); ++k) {
     const auto& law = laws.empty() ? config.friction : laws[k];
     const double p_Pa = state.tractions.p_s_Pa[k];
-    const double mu_s = interface::static_coefficient(law), mu_k = interface::kinetic_coefficient(law);
-    if (given.fracture_energy_J_per_m2.empty()) {
-      const auto slip_m = interface::weakening_slip_m(law);
-      if (!slip_m)
-        throw UserError("{} = \"{}\" has no fracture energy of its own; give it by {}", Key("friction.law"),
-                        law.name(), for_caller("--fracture-energy", "fracture_energy_J_per_m2"));
-      // Friction that does not weaken takes no end of energy.
-      p.fracture_energy_J_per_m2.push_back(mu_s > mu_k ? 0.5 * (mu_s - mu_k) * p_Pa * *slip_m : infinity);
-    } else {
-      p.fracture_energy_J_per_m2.push_back(at(given.x_m, given.fracture_energy_J_per_m2, p.x_m[k]));
-    }
-    const double residual =
-        given.residual_coefficient.empty() ? mu_k : at(given.x_m, given.residual_coefficient, p.x_m[k]);
+    const auto of_state =
+        interface::state_breakdown(law, state.tractions.t_s_Pa[k], p_Pa, slip_rate_at_tip_m_per_s);
+    p.fracture_energy_J_per_m2.push_back(given.fracture_energy_J_per_m2.empty()
+                                             ? fracture_energy_J_per_m2(law, of_state, p_Pa)
+                                             : at(given.x_m, given.fracture_energy_J_per_m2, p.x_m[k]));
+    const double residual = !given.residual_coefficient.empty()
+                                ? at(given.x_m, given.residual_coefficient, p.x_m[k])
+                            : of_state ? of_state->residual_coefficient
+                                       : interface::kinetic_coefficient(law);
     p.residual_coefficient.push_back(residual);
     loads.residual_coefficient.push_back(knows_pressure ? residual : 0);
     loads.cohesion_Pa.push_back(law.cohesion_Pa() + (knows_pressure ? 0 : residual * p_Pa));
@@ -142,7 +158,7 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
 
 /// What the prediction leaves out.
 void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
-               const statics::Equilibrium& state, FracturePrediction& p) {
+               const statics::Equilibrium& state, bool by_law, FracturePrediction& p) {
   const auto absorbs = [](const mesh::Plate& plate) {
     return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
   };
@@ -161,6 +177,11 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
                     factor, config.plate.element_size_m));
   if (config.plate.sides == mesh::Sides::periodic)
     p.notes.emplace_back("periodic sides count as ends of the contact");
+  if (config.friction.has_state() && by_law)
+    p.notes.push_back(fmt::format(
+        "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
+        "the event on",
+        slip_rate_at_tip_m_per_s));
   if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
   const auto laws = input::friction_at(config, p.x_m);
   std::size_t n_beyond = 0;
@@ -206,7 +227,7 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
   p.covers_all = patch.first == 0 && patch.last + 1 == p.x_m.size();
   p.of_fronts = fracture::predict(response, loads, p.fracture_energy_J_per_m2, patch.first, patch.last,
                                   fracture::SpeedLaw(bodies));
-  add_notes(given, config, bodies, initial.common, p);
+  add_notes(given, config, bodies, initial.common, friction.fracture_energy_J_per_m2.empty(), p);
   return p;
 }
 

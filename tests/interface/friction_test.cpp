@@ -201,5 +201,24 @@ TEST(FrictionTable, RefusesWhatIsNoTable) {
   EXPECT_EQ(problem({0, 1}, {0.3, 0.6}), "");  // strengthens
 }
 
+TEST(StateBreakdown, OfAgingAndSlipLawsIsKnown) {
+  constexpr double p_Pa = 5e6, t_Pa = 3.4e6, V = 1;
+  const auto fall_of = [&](const auto& law) {
+    return law.state_before(t_Pa, p_Pa) - law.evaluator().steady_state(V);
+  };
+  // At V far above d_c/theta psi falls linearly under the aging law, by b/d_c, exponentially under the slip
+  // law.
+  const RateAndStateAging aging{};
+  const double fall = fall_of(aging);
+  const auto of_aging = state_breakdown(aging, t_Pa, p_Pa, V);
+  EXPECT_NEAR(of_aging->energy_over_pressure_m, aging.d_c_m * (0.5 * fall * fall / aging.b),
+              0.02 * of_aging->energy_over_pressure_m);
+  EXPECT_DOUBLE_EQ(of_aging->residual_coefficient, aging.evaluator().steady_coefficient(V));
+  const RateAndStateSlip slip{};
+  EXPECT_NEAR(state_breakdown(slip, t_Pa, p_Pa, V)->energy_over_pressure_m, slip.d_c_m * fall_of(slip),
+              1e-3 * slip.d_c_m * fall_of(slip));
+  EXPECT_FALSE(state_breakdown(SlipWeakening{}, t_Pa, p_Pa, V));
+}
+
 }  // namespace
 }  // namespace slipfront::interface

@@ -10,7 +10,7 @@ import re
 import numpy as np
 import pytest
 import slipfront
-from common import refusal, require_done
+from common import ROOT, refusal, require_done
 from package_cases import program
 
 # Alike bodies; Gamma = (mu_s - mu_k) p d_c/2 = 1 J/m2, 10 elements in the process zone.
@@ -215,6 +215,21 @@ def test_a_run_without_the_table_predicts_nothing(tmp_path):
     assert len(old.fracture) == 0
     with pytest.raises(slipfront.CaseError, match="no fracture.csv with numbers"):
         slipfront.predict_fronts(old)
+
+
+def test_rate_and_state_has_the_fracture_energy_of_its_state():
+    case = ROOT / "examples/rate-and-state/case.toml"
+    coarse = {"plate.element_size_m": 1e-3}
+    run = slipfront.run(case, coarse, progress=False)
+    points = run.fracture
+    inside = (points.breakdown_complete == 1) & (points.x_m > 0.05) & (points.x_m < 0.13)
+    points = points.isel(point=inside.to_numpy())
+    predicted = slipfront.predict_fronts(case, coarse)
+    assert "slip at 1 m/s" in predicted.attrs["notes"][-1]
+    right = predicted.isel(point=(predicted.direction == 1).to_numpy())
+    expected = np.interp(points.x_m, right.x_m, right.fracture_energy_J_per_m2)
+    # Slip rates are not 1 m/s: psi_ss changes by b times their logarithm, a tenth of its fall.
+    np.testing.assert_allclose(points.breakdown_work_J_per_m2, expected, rtol=0.2)
 
 
 def test_info_tells_cracks_in_short(tmp_path):

@@ -34,13 +34,13 @@ bool TipSlips::slips_by(std::ptrdiff_t node, double time_s) const {
 void TipSlips::take_row(const record::History& row) {
   const double time_s = row.time_s.front();
   const auto passed =
-      std::ranges::stable_partition(fresh_, [&](auto node) { return !slips_by(node, time_s); });
+      std::stable_partition(fresh_.begin(), fresh_.end(), [&](auto node) { return !slips_by(node, time_s); });
   const auto last = std::ssize(onset_s_) - 1;
-  for (const std::ptrdiff_t node : passed) {
-    if (node < last && !slips_by(node + 1, time_s)) add(row, node, 1);
-    if (node > 0 && !slips_by(node - 1, time_s)) add(row, node, -1);
+  for (auto at = passed; at != fresh_.end(); ++at) {
+    if (*at < last && !slips_by(*at + 1, time_s)) add(row, *at, 1);
+    if (*at > 0 && !slips_by(*at - 1, time_s)) add(row, *at, -1);
   }
-  fresh_.erase(passed.begin(), passed.end());
+  fresh_.erase(passed, fresh_.end());
 }
 
 void TipSlips::add(const record::History& row, std::ptrdiff_t node, int direction) {
