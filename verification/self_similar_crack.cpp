@@ -121,7 +121,6 @@ Found run(double slope, double h_m, double v_m_per_s) {
   options.l_star_m = 5e-3;
   options.mu_s = mu_s;
   options.elasticity = {pmma.youngs_modulus_Pa, pmma.poissons_ratio, false};
-  Found found;
   std::vector<double> v, zone, work, G_slip;
   for (const auto& front : fronts::find_fronts(event.record, {x_m, t, p}, options)) {
     if (front.direction < 0) continue;
