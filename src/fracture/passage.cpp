@@ -88,6 +88,7 @@ std::vector<Passage> passages(const fronts::Front& front, const Recorded& record
     if (recorded.tip_slip.direction[row] != front.direction || at == place_of.end()) continue;
     const auto& point = front.points[at->second];
     auto& here = all[at->second];
+    if (!(slowness_s_per_m[at->second] > 0)) continue;
     const double speed_m_per_s = 1 / slowness_s_per_m[at->second];
     const double since_s = recorded.tip_slip.time_s[row] - point.onset_s;
     if (!(speed_m_per_s < limiting_speed_m_per_s(bodies)) || !(here.cohesive_zone_m > 0)) continue;

@@ -27,18 +27,20 @@ double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i)
   return s.p_Pa[i] > 0 && remembers ? s.relaxed_Pa[i] : s.p_Pa[i];
 }
 
-void begin(const ContactModel& model, Interface& s, std::size_t i) {
-  auto& b = s.breakdown;
-  s.breaking[i] = 1;
-  b.peak_t_Pa[i] = s.strength_Pa[i];
-  b.peak_coefficient[i] = (s.strength_Pa[i] - model.law_at(i).cohesion_Pa()) / pressure_Pa(model, s, i);
-  b.least_coefficient[i] = b.counted_coefficient[i] = b.peak_coefficient[i];
-  b.residual_t_Pa[i] = s.strength_Pa[i];
-}
-
 void end_breakdown(Interface& s, std::size_t i) {
   s.breaking[i] = 0;
   s.broken[i] = 1;
+}
+
+void begin(const ContactModel& model, Interface& s, std::size_t i) {
+  auto& b = s.breakdown;
+  const double p_Pa = pressure_Pa(model, s, i);
+  if (!(p_Pa > 0)) return end_breakdown(s, i);
+  s.breaking[i] = 1;
+  b.peak_t_Pa[i] = s.strength_Pa[i];
+  b.peak_coefficient[i] = (s.strength_Pa[i] - model.law_at(i).cohesion_Pa()) / p_Pa;
+  b.least_coefficient[i] = b.counted_coefficient[i] = b.peak_coefficient[i];
+  b.residual_t_Pa[i] = s.strength_Pa[i];
 }
 
 void follow(const ContactModel& model, double dt_s, double v_before_m_per_s, Interface& s, std::size_t i) {
@@ -110,8 +112,11 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
     const bool begun = b.peak_t_Pa[i] > 0;
     const auto put = [&](std::vector<double>& to, double value) { to.push_back(begun ? value : nan); };
     // Of the traction at its peak above the residual one.
-    const double p_Pa = (b.peak_t_Pa[i] - model.law_at(i).cohesion_Pa()) / b.peak_coefficient[i];
-    const double fall_Pa = (b.peak_coefficient[i] - b.least_coefficient[i]) * p_Pa;
+    const double fall = b.peak_coefficient[i] - b.least_coefficient[i];
+    const double fall_Pa =
+        fall > 0 && b.peak_coefficient[i] > 0
+            ? fall / b.peak_coefficient[i] * (b.peak_t_Pa[i] - model.law_at(i).cohesion_Pa())
+            : 0;
     put(of.work_J_per_m2, b.work_J_per_m2[i]);
     put(of.peak_t_Pa, b.peak_t_Pa[i]);
     put(of.residual_t_Pa, b.residual_t_Pa[i]);
