@@ -33,6 +33,11 @@ constexpr solid::Material pmma{.youngs_modulus_Pa = 5.6e9,
                                .density_kg_per_m3 = 1180,
                                .stiffness_damping_s = 0.02e-6};
 const fracture::Bodies bodies(pmma, pmma);
+const fracture::Bodies undamped_bodies = [] {
+  auto undamped = pmma;
+  undamped.stiffness_damping_s = 0;
+  return fracture::Bodies(undamped, undamped);
+}();
 
 /// Slip C sqrt(v^2 t^2 - x^2) of a crack that has grown at +-v from a point: in the transforms of Laplace and
 /// Fourier its traction at x = 0 is drop = C v^2 int_0^inf Y(i s) ds/(s^2 + v^2)^(3/2).
@@ -41,11 +46,7 @@ double slip_factor(double v) {
   constexpr int n = 4000;  // s = v tan(angle)
   for (int i = 0; i < n; ++i) {
     const double angle = 0.5 * pi * (i + 0.5) / n;
-    const auto c = stability::compliance(
-        fracture::Bodies({pmma.youngs_modulus_Pa, pmma.poissons_ratio, pmma.density_kg_per_m3, pmma.plane, 0},
-                         solid::Material{pmma.youngs_modulus_Pa, pmma.poissons_ratio, pmma.density_kg_per_m3,
-                                         pmma.plane, 0}),
-        1, {v * std::tan(angle), 0});
+    const auto c = stability::compliance(undamped_bodies, 1, {v * std::tan(angle), 0});
     const double Y = -solid::shear_modulus_Pa(pmma) * (c.yy / c.determinant).real();
     sum += Y * std::cos(angle) * 0.5 * pi / n;
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -90,7 +91,7 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
   const auto p = given.placing_errors([&] { return run::predict_fronts(config, friction, options.x_m); });
   const auto& of = p.of_fronts;
   const double c_S = solid::shear_speed_m_per_s(config.material);
-  std::string text = fmt::format("statics of {}, {} nodes on the interface\n", p.bodies, p.x_m.size());
+  std::string text = fmt::format("statics of {}, {} nodes on the interface\n", p.bodies, p.n_nodes);
   text += fmt::format("first crack {:.4g} m: {}\n", of.first_length_m,
                       of.starts      ? "it runs"
                       : p.covers_all ? "the whole interface"

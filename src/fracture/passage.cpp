@@ -59,6 +59,7 @@ double G_by_slip(const Recorded& recorded, std::size_t row, double x_tip_m, doub
 
 std::vector<Passage> passages(const fronts::Front& front, const Recorded& recorded, const Bodies& bodies) {
   const auto& breakdown = recorded.breakdown;
+  const double limit_m_per_s = limiting_speed_m_per_s(bodies);
   std::vector<Passage> all;
   std::map<std::int32_t, std::size_t> place_of;
   std::vector<double> way_m, onset_s, zones_m;
@@ -69,7 +70,7 @@ std::vector<Passage> passages(const fronts::Front& front, const Recorded& record
     if (breakdown.complete.at(node) != 0) {
       here.stress_drop_Pa = std::abs(point.t_s_Pa) - breakdown.residual_t_Pa[node];
       here.cohesive_zone_m = point.v_tip_m_per_s * breakdown.time_s[node];
-      if (point.v_tip_m_per_s < limiting_speed_m_per_s(bodies))
+      if (point.v_tip_m_per_s < limit_m_per_s)
         here.K_Pa_sqrt_m =
             stress_intensity_Pa_sqrt_m(bodies, point.v_tip_m_per_s, breakdown.work_J_per_m2[node]);
     }
@@ -91,7 +92,7 @@ std::vector<Passage> passages(const fronts::Front& front, const Recorded& record
     if (!(slowness_s_per_m[at->second] > 0)) continue;
     const double speed_m_per_s = 1 / slowness_s_per_m[at->second];
     const double since_s = recorded.tip_slip.time_s[row] - point.onset_s;
-    if (!(speed_m_per_s < limiting_speed_m_per_s(bodies)) || !(here.cohesive_zone_m > 0)) continue;
+    if (!(speed_m_per_s < limit_m_per_s) || !(here.cohesive_zone_m > 0)) continue;
     here.G_slip_J_per_m2 = G_by_slip(recorded, row, point.x_m + front.direction * speed_m_per_s * since_s,
                                      here.cohesive_zone_m, speed_m_per_s, bodies);
   }

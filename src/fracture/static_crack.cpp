@@ -105,27 +105,22 @@ void StaticCrack::add(const Candidate& c) {
 void StaticCrack::begin(std::size_t node) {
   SLIPFRONT_ASSERT(nodes_.empty(), "a crack begins once");
   add(candidate(static_cast<std::ptrdiff_t>(node)));
-  left_ = static_cast<std::ptrdiff_t>(node) - 1;
-  right_ = static_cast<std::ptrdiff_t>(node) + 1;
-  at_left_ = candidate(left_);
-  at_right_ = candidate(right_);
+  beside_ = {candidate(static_cast<std::ptrdiff_t>(node) - 1),
+             candidate(static_cast<std::ptrdiff_t>(node) + 1)};
 }
 
 double StaticCrack::energy_release_rate_J_per_m2(int side) const {
-  const auto& c = side > 0 ? at_right_ : at_left_;
+  const auto& c = beside_[side > 0];
   if (!is_node(c.node)) return nan;
   return c.unbalanced_Pa > 0 ? 0.5 * c.unbalanced_Pa * c.unbalanced_Pa / c.pivot : 0;
 }
 
 void StaticCrack::release(int side) {
-  auto& next = side > 0 ? right_ : left_;
-  auto& released = side > 0 ? at_right_ : at_left_;
-  auto& other = side > 0 ? at_left_ : at_right_;
-  SLIPFRONT_ASSERT(is_node(next), "a node beside the crack");
+  auto &released = beside_[side > 0], &other = beside_[side < 0];
+  SLIPFRONT_ASSERT(is_node(released.node), "a node beside the crack");
   add(released);
   extend(other);
-  next += side;
-  released = candidate(next);
+  released = candidate(released.node + side);
 }
 
 }  // namespace slipfront::fracture

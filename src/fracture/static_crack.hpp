@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -21,9 +22,8 @@ struct SlipResponse {
 SlipResponse response_of_half_spaces(const Bodies& bodies, const std::vector<double>& x_m);
 
 /// Of a sample.
-/// @param stiffness_N_per_m  condensed to the interface: forces of the contact on the plate by relative
-/// displacements,
-///                           x and y of each node in turn
+/// @param stiffness_N_per_m  condensed to the interface, x and y of each node in turn: forces on the plate by
+///                           relative displacements
 SlipResponse response_of_sample(const Eigen::MatrixXd& stiffness_N_per_m, std::vector<double> x_m,
                                 const std::vector<double>& tributary_m);
 
@@ -48,7 +48,7 @@ class StaticCrack {
   /// one. Any node where there is no crack yet. NaN beyond the ends.
   double energy_release_rate_J_per_m2(int side) const;
   /// The node beside the crack; -1 or the number of nodes beyond the ends.
-  std::ptrdiff_t next(int side) const { return side > 0 ? right_ : left_; }
+  std::ptrdiff_t next(int side) const { return beside_[side > 0].node; }
   /// Begins at a node.
   void begin(std::size_t node);
   /// Releases the node beside the crack. @pre there is one
@@ -69,11 +69,10 @@ class StaticCrack {
 
   const SlipResponse& response_;
   const CrackLoads& loads_;
-  std::vector<std::size_t> nodes_;  ///< of the crack, in the order of release
-  Eigen::MatrixXd lower_, upper_;   ///< factors of their equations, without pivoting
-  Eigen::VectorXd unbalanced_Pa_;   ///< right-hand side after elimination
-  std::ptrdiff_t left_ = 0, right_ = 0;
-  Candidate at_left_, at_right_;
+  std::vector<std::size_t> nodes_;   ///< of the crack, in the order of release
+  Eigen::MatrixXd lower_, upper_;    ///< factors of their equations, without pivoting
+  Eigen::VectorXd unbalanced_Pa_;    ///< right-hand side after elimination
+  std::array<Candidate, 2> beside_;  ///< the crack, on the left and on the right
 };
 
 }  // namespace slipfront::fracture

@@ -2,7 +2,7 @@
 #include "fracture/tip.hpp"
 
 #include <algorithm>
-#include <array>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -58,29 +58,6 @@ std::vector<double> slownesses(const Bodies& bodies) {
   return found;
 }
 
-/// Nodes and weights of Gauss and Legendre on [-1, 1].
-struct Rule {
-  static constexpr int n = 40;
-  std::array<double, n> x{}, w{};
-  Rule() {
-    for (int i = 0; i < n; ++i) {
-      double z = std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 0;
-      for (int k = 0; k < 100; ++k) {
-        double p = 1, before = 0;
-        for (int j = 1; j <= n; ++j) {
-          const double next = ((2 * j - 1) * z * p - (j - 1) * before) / j;
-          before = p;
-          p = next;
-        }
-        slope = n * (z * p - before) / (z * z - 1);
-        z -= p / slope;
-      }
-      x[i] = z;
-      w[i] = 2 / ((1 - z * z) * slope * slope);
-    }
-  }
-};
-
 }  // namespace
 
 Complex moving_stiffness_Pa(const Bodies& bodies, double speed_m_per_s, double mu, Direction direction) {
@@ -126,7 +103,6 @@ double limiting_speed_m_per_s(const Bodies& bodies) {
 }
 
 double speed_factor(const Bodies& given, double speed_m_per_s) {
-  static const Rule rule;
   const auto bodies = undamped(given);
   const auto at = slownesses(bodies);
   const double last = at.back(), d = 1 / speed_m_per_s;
@@ -136,13 +112,13 @@ double speed_factor(const Bodies& given, double speed_m_per_s) {
   double integral = 0;
   for (std::size_t k = 0; k + 1 < at.size(); ++k) {
     const double middle = 0.5 * (at[k] + at[k + 1]), half = 0.5 * (at[k + 1] - at[k]);
-    for (int i = 0; i < Rule::n; ++i) {
-      const double angle = 0.5 * pi * rule.x[i];  // square roots at both ends become smooth
+    const auto at_angle = [&](double angle) {  // by which square roots at both ends become smooth
       const double slowness = middle + half * std::sin(angle);
       // Real below the first slowness, where the stiffness is that of waves that leave, -i times a number.
       const double argument = std::arg(Complex(0, 1) * moving_stiffness_Pa(bodies, 1 / slowness));
-      integral += rule.w[i] * 0.5 * pi * half * std::cos(angle) * argument / (d - slowness);
-    }
+      return half * std::cos(angle) * argument / (d - slowness);
+    };
+    integral += boost::math::quadrature::gauss<double, 40>::integrate(at_angle, -0.5 * pi, 0.5 * pi);
   }
   const double k_II = std::sqrt(1 - last / d) * std::exp(integral / pi);
   return energy_factor(bodies, speed_m_per_s) * k_II * k_II;

@@ -95,31 +95,43 @@ double fracture_energy_J_per_m2(const interface::FrictionLaw& law,
   return over_pressure_m > 0 ? over_pressure_m * p_Pa : infinity;
 }
 
-/// Fills in what friction does behind a tip, and the tractions before it, in the direction of the load.
-void add_friction(const input::Case& config, const TipFriction& given, const statics::Equilibrium& state,
-                  FracturePrediction& p, fracture::CrackLoads& loads) {
-  const auto laws = input::friction_at(config, p.x_m);
+/// The friction law of each node.
+struct Laws {
+  std::vector<interface::FrictionLaw> of_nodes;  ///< empty where all have that of the case
+  const interface::FrictionLaw& of_case;
+
+  Laws(const input::Case& config, const std::vector<double>& x_m)
+      : of_nodes(input::friction_at(config, x_m)), of_case(config.friction) {}
+  const interface::FrictionLaw& operator[](std::size_t k) const {
+    return of_nodes.empty() ? of_case : of_nodes[k];
+  }
+};
+
+/// Fills in what friction does behind a tip.
+/// @return the fracture energy, J/m2 [nodes]
+std::vector<double> add_friction(const input::Case& config, const Laws& laws, const TipFriction& given,
+                                 const record::StaticState& before, fracture::CrackLoads& loads) {
   for (const double c : given.residual_coefficient)
     if (!(c >= 0 && c <= 100))
       throw UserError("{} is {:g}; it must be from 0 to 100",
                       for_caller("--residual-coefficient", "residual_coefficient"), c);
   const bool knows_pressure = config.regularisation.relaxed != interface::Relaxed::initial_pressure;
-  for (std::size_t k = 0; k < p.x_m.size(); ++k) {
-    const auto& law = laws.empty() ? config.friction : laws[k];
-    const double p_Pa = state.tractions.p_s_Pa[k];
-    const auto of_state =
-        interface::state_breakdown(law, state.tractions.t_s_Pa[k], p_Pa, slip_rate_at_tip_m_per_s);
-    p.fracture_energy_J_per_m2.push_back(given.fracture_energy_J_per_m2.empty()
-                                             ? fracture_energy_J_per_m2(law, of_state, p_Pa)
-                                             : at(given.x_m, given.fracture_energy_J_per_m2, p.x_m[k]));
+  std::vector<double> energies;
+  for (std::size_t k = 0; k < before.x_m.size(); ++k) {
+    const auto& law = laws[k];
+    const double x_m = before.x_m[k], p_Pa = before.p_s_Pa[k];
+    const auto of_state = interface::state_breakdown(law, before.t_s_Pa[k], p_Pa, slip_rate_at_tip_m_per_s);
+    energies.push_back(given.fracture_energy_J_per_m2.empty()
+                           ? fracture_energy_J_per_m2(law, of_state, p_Pa)
+                           : at(given.x_m, given.fracture_energy_J_per_m2, x_m));
     const double residual = !given.residual_coefficient.empty()
-                                ? at(given.x_m, given.residual_coefficient, p.x_m[k])
+                                ? at(given.x_m, given.residual_coefficient, x_m)
                             : of_state ? of_state->residual_coefficient
                                        : interface::kinetic_coefficient(law);
-    p.residual_coefficient.push_back(residual);
     loads.residual_coefficient.push_back(knows_pressure ? residual : 0);
     loads.cohesion_Pa.push_back(law.cohesion_Pa() + (knows_pressure ? 0 : residual * p_Pa));
   }
+  return energies;
 }
 
 /// Adds the trigger's tractions, where they stay.
@@ -134,15 +146,15 @@ struct Patch {
 };
 
 /// Nodes of the first crack: at a place, the trigger's, or the node that is nearest to its strength.
-Patch first_crack(const input::Case& config, const InitialState& initial, const FracturePrediction& p,
-                  const std::optional<double>& x_m) {
+Patch first_crack(const input::Case& config, const InitialState& initial, const std::optional<double>& x_m) {
+  const auto& nodes_x_m = initial.common.tractions.x_m;
   const auto nearest = [&](double x) {
     const auto away = [&](double node_x) { return std::abs(node_x - x); };
-    return static_cast<std::size_t>(std::ranges::min_element(p.x_m, {}, away) - p.x_m.begin());
+    return static_cast<std::size_t>(std::ranges::min_element(nodes_x_m, {}, away) - nodes_x_m.begin());
   };
-  if (x_m && !(*x_m >= p.x_m.front() && *x_m <= p.x_m.back()))
+  if (x_m && !(*x_m >= nodes_x_m.front() && *x_m <= nodes_x_m.back()))
     throw UserError("{} is {:g} m; the interface goes from {:g} to {:g} m", for_caller("--x", "at_x_m"), *x_m,
-                    p.x_m.front(), p.x_m.back());
+                    nodes_x_m.front(), nodes_x_m.back());
   if (x_m) return {nearest(*x_m), nearest(*x_m)};
   if (interface::is_at_edge(config.event)) {
     const auto zone = motion::trigger_zone(initial.common, config.event, config.trigger.zone_m);
@@ -158,7 +170,7 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
 
 /// What the prediction leaves out.
 void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
-               const statics::Equilibrium& state, bool by_law, FracturePrediction& p) {
+               const Laws& laws, const record::StaticState& before, bool by_law, FracturePrediction& p) {
   const auto absorbs = [](const mesh::Plate& plate) {
     return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
   };
@@ -183,17 +195,13 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
         "the event on",
         slip_rate_at_tip_m_per_s));
   if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
-  const auto laws = input::friction_at(config, p.x_m);
   std::size_t n_beyond = 0;
-  for (std::size_t k = 0; k < p.x_m.size(); ++k) {
-    const auto& law = laws.empty() ? config.friction : laws[k];
-    n_beyond +=
-        std::abs(state.tractions.t_s_Pa[k]) > interface::static_strength_Pa(law, state.tractions.p_s_Pa[k]);
-  }
-  if (2 * n_beyond > p.x_m.size())
+  for (std::size_t k = 0; k < p.n_nodes; ++k)
+    n_beyond += std::abs(before.t_s_Pa[k]) > interface::static_strength_Pa(laws[k], before.p_s_Pa[k]);
+  if (2 * n_beyond > p.n_nodes)
     p.notes.push_back(
         fmt::format("t is beyond the strength at {} of {} nodes: they slip at once, without a front",
-                    n_beyond, p.x_m.size()));
+                    n_beyond, p.n_nodes));
 }
 
 }  // namespace
@@ -203,18 +211,17 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
   const auto config = in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces);
   const auto initial = make_initial_state(config, [](auto, auto) { return true; });
   const auto bodies = bodies_of(config);
+  const auto& before = initial.common.tractions;
+  const Laws laws(config, before.x_m);
   FracturePrediction p;
-  p.x_m = initial.common.tractions.x_m;
-  p.element_size_m = config.plate.element_size_m;
+  p.n_nodes = before.x_m.size();
   fracture::CrackLoads loads;
-  loads.t_Pa = initial.common.tractions.t_s_Pa;
-  loads.p_Pa = initial.common.tractions.p_s_Pa;
-  p.t_Pa = loads.t_Pa;
-  p.p_Pa = loads.p_Pa;
-  add_friction(config, friction, initial.common, p, loads);
+  loads.t_Pa = before.t_s_Pa;
+  loads.p_Pa = before.p_s_Pa;
+  const auto energies = add_friction(config, laws, friction, before, loads);
   add_trigger(config, initial, loads.t_Pa);
   auto response = is_held(config) ? response_of_sample(config, initial)
-                                  : fracture::response_of_half_spaces(bodies, p.x_m);
+                                  : fracture::response_of_half_spaces(bodies, before.x_m);
   p.bodies = is_held(config) ? "the sample, its far edges held" : "half-spaces";
   // To the side to which the load drives the plate.
   double force = 0;
@@ -223,11 +230,11 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
     for (double& t_Pa : loads.t_Pa) t_Pa = -t_Pa;
     response.p_per_slip *= -1;
   }
-  const auto patch = first_crack(config, initial, p, x_m);
-  p.covers_all = patch.first == 0 && patch.last + 1 == p.x_m.size();
-  p.of_fronts = fracture::predict(response, loads, p.fracture_energy_J_per_m2, patch.first, patch.last,
-                                  fracture::SpeedLaw(bodies));
-  add_notes(given, config, bodies, initial.common, friction.fracture_energy_J_per_m2.empty(), p);
+  const auto patch = first_crack(config, initial, x_m);
+  p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
+  p.of_fronts =
+      fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
+  add_notes(given, config, bodies, laws, before, friction.fracture_energy_J_per_m2.empty(), p);
   return p;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,9 +21,7 @@ struct TipFriction {
 /// What a case lets expect of its fronts as cracks.
 struct FracturePrediction {
   fracture::Prediction of_fronts;
-  std::vector<double> x_m, t_Pa, p_Pa, fracture_energy_J_per_m2,
-      residual_coefficient;  ///< [nodes] before the event
-  double element_size_m = 0;
+  std::size_t n_nodes = 0;         ///< on the interface
   bool covers_all = false;         ///< the first crack is the whole interface
   std::string bodies;              ///< whose static response it is, in words
   std::vector<std::string> notes;  ///< what it leaves out, a line each
