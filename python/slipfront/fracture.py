@@ -85,7 +85,8 @@ def predict_fronts(
     Returns, over `point` in the order of travel of each front: x_m, direction, length_m of the crack,
     G_static_J_per_m2, fracture_energy_J_per_m2, v_tip_m_per_s, time_s since the fronts began; the last point
     of a front that arrests is the node that it does not break. In the attributes: starts, first_length_m,
-    critical_length_m, arrests (directions), bodies, notes. Raises CaseError."""
+    critical_length_m, nucleation_length_m (slow slip over it runs away), arrests (directions), bodies, notes.
+    Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
     if isinstance(case, OpenRun):
         x_m, work, coefficient = measured_friction(case)

@@ -100,6 +100,8 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
     text += std::isnan(of.critical_length_m)
                 ? "no crack from there runs, however long\n"
                 : fmt::format("critical crack {:.4g} m: from this length on it runs\n", of.critical_length_m);
+  if (std::isfinite(p.nucleation_length_m) && !p.covers_all)
+    text += fmt::format("nucleation length {:.3g} m: slow slip over it runs away\n", p.nucleation_length_m);
   for (const auto& front : of.fronts) text += line_of(front, c_S);
   for (const auto& note : given.notes()) text += fmt::format("note: {}\n", note);
   for (const auto& note : p.notes) text += fmt::format("note: {}\n", note);

@@ -15,7 +15,6 @@
 #include "files/text.hpp"
 #include "fracture/prediction.hpp"
 #include "run/choices.hpp"
-#include "run/fracture.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::cli {
@@ -137,17 +136,13 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
                          *o.unstable_wavelength_m));
   if (o.griffith_half_length_m)
     list.add("critical crack length",
-             fmt::format("{:.3g} m (Griffith; Andrews 1976): cracks as long run on{}",
+             fmt::format("{:.3g} m (Griffith; Andrews 1976): under uniform t cracks as long run on{}",
                          2 * *o.griffith_half_length_m, trigger));
   add_zone();
 }
 
-/// In short what `slipfront fracture` tells, where that takes no statics and the law has a fracture energy.
-void add_cracks(const input::Case& config, Listing& list) {
-  if (!input::is_prestressed(config) || config.plate.top == mesh::Top::loaded ||
-      config.event == interface::EventKind::none || !interface::weakening_slip_m(config.friction))
-    return;
-  const auto of = run::predict_fronts(config).of_fronts;
+/// In short what `slipfront fracture` tells.
+void add_cracks(const fracture::Prediction& of, Listing& list) {
   auto text = of.starts ? fmt::format("the first crack, {:.3g} m, runs", of.first_length_m)
               : std::isfinite(of.critical_length_m)
                   ? fmt::format("the first crack, {:.3g} m, does not run; from {:.3g} m on it would",
@@ -253,7 +248,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
                          speed_m_per_s, speed_m_per_s * config.time.end_s));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
-  add_cracks(config, list);
+  if (info.rupture.cracks) add_cracks(info.rupture.cracks->of_fronts, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
   for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);
   for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);

@@ -144,7 +144,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
           fronts::name(front.end));
     print("{}", fracture_text(result, front));
   }
-  print_rupture(run::rupture_outlook(result.config, initial.common, initial.tributary_m));
+  print_rupture(result.rupture);
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
 }

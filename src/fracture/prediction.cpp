@@ -5,12 +5,16 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
+#include "fracture/static_crack.hpp"
 
 namespace slipfront::fracture {
 
 namespace {
 
 constexpr int speeds_in_table = 400;
+/// Tips that differ by less differ by rounding: neither comes first.
+constexpr double rounding = 1e-9;
 
 /// The tip of a front on its way to the next node.
 struct Tip {
@@ -43,7 +47,7 @@ class Growth {
     Prediction p;
     p.first_length_m = length_m();
     p.starts = runs();
-    while (!runs() && has_next()) release(nearer());
+    while (!runs() && has_next()) release_nearer();
     if (!runs()) return p;
     p.critical_length_m = length_m();
     while (runs()) step();
@@ -62,11 +66,6 @@ class Growth {
   bool has_next() const { return has_next(-1) || has_next(1); }
   bool runs() const { return tips_[0].v_m_per_s > 0 || tips_[1].v_m_per_s > 0; }
   double length_m() const { return spacing_m_ * static_cast<double>(crack_.next(1) - crack_.next(-1) - 1); }
-  Tip& nearer() {
-    if (!has_next(-1)) return tips_[1];
-    if (!has_next(1)) return tips_[0];
-    return tips_[0].share <= tips_[1].share ? tips_[0] : tips_[1];
-  }
   /// At the energy release rates of the crack as it is.
   void look() {
     for (auto& tip : tips_) {
@@ -87,8 +86,11 @@ class Growth {
             tip.v_m_per_s,
             time_s};
   }
-  void release(const Tip& tip) {
-    crack_.release(tip.side());
+  /// The nodes beside the crack that are nearest to breaking.
+  void release_nearer() {
+    const double least = std::min(tips_[0].share, tips_[1].share);
+    for (const auto& tip : tips_)
+      if (has_next(tip.side()) && !(tip.share > (1 + rounding) * least)) crack_.release(tip.side());
     look();
   }
   /// To the time at which the first of the tips is at its next node.
@@ -96,14 +98,19 @@ class Growth {
     const auto takes_s = [](const Tip& tip) {
       return tip.v_m_per_s > 0 ? tip.way_m / tip.v_m_per_s : infinity;
     };
-    const bool right = takes_s(tips_[1]) < takes_s(tips_[0]);
-    Tip &arrives = tips_[right], &other = tips_[!right];
-    const double dt_s = takes_s(arrives);
+    const std::array takes = {takes_s(tips_[0]), takes_s(tips_[1])};
+    const double dt_s = std::min(takes[0], takes[1]);
     time_s_ += dt_s;
-    other.way_m -= dt_s * other.v_m_per_s;
-    arrives.front.points.push_back(point(arrives, time_s_));
-    arrives.way_m = spacing_m_;
-    release(arrives);
+    std::array<bool, 2> arrives = {};
+    for (const bool right : {false, true}) {
+      auto& tip = tips_[right];
+      arrives[right] = takes[right] <= (1 + rounding) * dt_s;
+      if (arrives[right]) tip.front.points.push_back(point(tip, time_s_));
+      tip.way_m = arrives[right] ? spacing_m_ : tip.way_m - dt_s * tip.v_m_per_s;
+    }
+    for (const bool right : {false, true})
+      if (arrives[right]) crack_.release(tips_[right].side());
+    look();
   }
 
   const std::vector<double>& x_m_;

@@ -2,15 +2,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "base/numbers.hpp"
-#include "fracture/static_crack.hpp"
+#include "fracture/tip.hpp"
 #include "record/column.hpp"
 
 namespace slipfront::fracture {
 
-/// speed_of_share_m_per_s by a table.
+struct SlipResponse;
+struct CrackLoads;
+
+/// The inverse of speed_factor, by a table.
 class SpeedLaw {
  public:
   explicit SpeedLaw(const Bodies& bodies);

@@ -123,4 +123,25 @@ void StaticCrack::release(int side) {
   released = candidate(released.node + side);
 }
 
+double nucleation_length_m(SlipResponse response, const std::vector<double>& coefficient,
+                           const std::vector<double>& weakening_Pa_per_m, std::size_t node) {
+  const auto n = response.x_m.size();
+  const double h_m = (response.x_m.back() - response.x_m.front()) / static_cast<double>(n - 1);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    response.t_per_slip(at, at) += weakening_Pa_per_m[k];
+  }
+  const std::vector<double> zero(n, 0.0);
+  const CrackLoads loads{zero, zero, coefficient, zero};
+  StaticCrack patch(response, loads);
+  patch.begin(node);
+  for (std::size_t nodes = 1; nodes < n; ++nodes) {
+    const auto there = [&](int side) { return patch.next(side) >= 0 && patch.next(side) < std::ssize(zero); };
+    const int side = !there(-1) || (nodes % 2 == 1 && there(1)) ? 1 : -1;
+    if (!(patch.stiffness_Pa_per_m(side) > 0)) return (static_cast<double>(nodes) + 0.5) * h_m;
+    patch.release(side);
+  }
+  return nan;
+}
+
 }  // namespace slipfront::fracture

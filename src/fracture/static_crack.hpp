@@ -47,6 +47,8 @@ class StaticCrack {
   /// J/m2 of the node beside the crack on a side, -1 left or +1 right; 0 where its t is below the residual
   /// one. Any node where there is no crack yet. NaN beyond the ends.
   double energy_release_rate_J_per_m2(int side) const;
+  /// Pa/m that the traction of the node beside the crack falls by over its slip, the crack's nodes following.
+  double stiffness_Pa_per_m(int side) const { return beside_[side > 0].pivot; }
   /// The node beside the crack; -1 or the number of nodes beyond the ends.
   std::ptrdiff_t next(int side) const { return beside_[side > 0].node; }
   /// Begins at a node.
@@ -74,5 +76,13 @@ class StaticCrack {
   Eigen::VectorXd unbalanced_Pa_;    ///< right-hand side after elimination
   std::array<Candidate, 2> beside_;  ///< the crack, on the left and on the right
 };
+
+/// Length of a patch about a node over which slip that weakens friction linearly goes on without further load
+/// (Uenishi and Rice 2003), to half an element: it grows to both sides, at an end of the contact to the other
+/// alone. Not a number where none does.
+/// @param coefficient         friction before it weakens [nodes]
+/// @param weakening_Pa_per_m  fall of the strength over slip [nodes]
+double nucleation_length_m(SlipResponse response, const std::vector<double>& coefficient,
+                           const std::vector<double>& weakening_Pa_per_m, std::size_t node);
 
 }  // namespace slipfront::fracture

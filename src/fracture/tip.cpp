@@ -124,14 +124,4 @@ double speed_factor(const Bodies& given, double speed_m_per_s) {
   return energy_factor(bodies, speed_m_per_s) * k_II * k_II;
 }
 
-double speed_of_share_m_per_s(const Bodies& bodies, double share) {
-  if (!(share < 1)) return 0;
-  double low = 0, high = limiting_speed_m_per_s(bodies);
-  for (int k = 0; k < 50; ++k) {
-    const double middle = 0.5 * (low + high);
-    (speed_factor(bodies, middle) > share ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 }  // namespace slipfront::fracture

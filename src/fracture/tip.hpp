@@ -46,7 +46,4 @@ double limiting_speed_m_per_s(const Bodies& bodies);
 /// with a residual traction that slip does not change. Falls from 1 to 0 at limiting_speed; 0 beyond.
 double speed_factor(const Bodies& bodies, double speed_m_per_s);
 
-/// Its inverse: the speed at which a long crack runs that has `share` = Gamma/G_static; 0 from 1 on.
-double speed_of_share_m_per_s(const Bodies& bodies, double share);
-
 }  // namespace slipfront::fracture

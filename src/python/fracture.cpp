@@ -46,6 +46,7 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   found["starts"] = of.starts;
   found["first_length_m"] = of.first_length_m;
   found["critical_length_m"] = of.critical_length_m;
+  found["nucleation_length_m"] = p.nucleation_length_m;
   found["bodies"] = p.bodies;
   found["notes"] = p.notes;
   return found;

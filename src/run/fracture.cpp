@@ -11,6 +11,7 @@
 #include "base/caller.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "fracture/static_crack.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
 #include "motion/trigger_zone.hpp"
@@ -145,6 +146,21 @@ struct Patch {
   std::size_t first = 0, last = 0;
 };
 
+/// That of the sample, by the linear fall of friction that has its fracture energy.
+double nucleation_length_m(const Laws& laws, const fracture::SlipResponse& response,
+                           const record::StaticState& before, bool knows_pressure, std::size_t node) {
+  std::vector<double> coefficient, weakening_Pa_per_m;
+  for (std::size_t k = 0; k < before.x_m.size(); ++k) {
+    const auto slip_m = interface::weakening_slip_m(laws[k]);
+    if (!slip_m) return nan;
+    const double mu_s = interface::static_coefficient(laws[k]);
+    coefficient.push_back(knows_pressure ? mu_s : 0);
+    weakening_Pa_per_m.push_back((mu_s - interface::kinetic_coefficient(laws[k])) * before.p_s_Pa[k] /
+                                 *slip_m);
+  }
+  return fracture::nucleation_length_m(response, coefficient, weakening_Pa_per_m, node);
+}
+
 /// Nodes of the first crack: at a place, the trigger's, or the node that is nearest to its strength.
 Patch first_crack(const input::Case& config, const InitialState& initial, const std::optional<double>& x_m) {
   const auto& nodes_x_m = initial.common.tractions.x_m;
@@ -194,10 +210,13 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
         "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
         "the event on",
         slip_rate_at_tip_m_per_s));
+  if (given.loading.method == statics::LoadingMethod::ramp)
+    p.notes.emplace_back("the state before the event is that of loading.method = direct");
   if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
   std::size_t n_beyond = 0;
   for (std::size_t k = 0; k < p.n_nodes; ++k)
-    n_beyond += std::abs(before.t_s_Pa[k]) > interface::static_strength_Pa(laws[k], before.p_s_Pa[k]);
+    n_beyond += !laws[k].has_state() &&
+                std::abs(before.t_s_Pa[k]) > interface::static_strength_Pa(laws[k], before.p_s_Pa[k]);
   if (2 * n_beyond > p.n_nodes)
     p.notes.push_back(
         fmt::format("t is beyond the strength at {} of {} nodes: they slip at once, without a front",
@@ -208,7 +227,9 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
 
 FracturePrediction predict_fronts(const input::Case& given, const TipFriction& friction,
                                   const std::optional<double>& x_m) {
-  const auto config = in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces);
+  auto config = in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces);
+  if (config.loading.method == statics::LoadingMethod::ramp)
+    config.loading.method = statics::LoadingMethod::direct;
   const auto initial = make_initial_state(config, [](auto, auto) { return true; });
   const auto bodies = bodies_of(config);
   const auto& before = initial.common.tractions;
@@ -232,10 +253,20 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
   }
   const auto patch = first_crack(config, initial, x_m);
   p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
+  p.nucleation_length_m = nucleation_length_m(
+      laws, response, before, config.regularisation.relaxed != interface::Relaxed::initial_pressure,
+      (patch.first + patch.last) / 2);
   p.of_fronts =
       fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
   add_notes(given, config, bodies, laws, before, friction.fracture_energy_J_per_m2.empty(), p);
   return p;
+}
+
+std::optional<FracturePrediction> quick_prediction(const input::Case& config) {
+  if (!input::is_prestressed(config) || is_held(config) || config.event == interface::EventKind::none ||
+      !(config.friction.has_state() || interface::weakening_slip_m(config.friction)))
+    return {};
+  return predict_fronts(config);
 }
 
 }  // namespace slipfront::run

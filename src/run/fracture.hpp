@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "fracture/prediction.hpp"
 #include "input/case.hpp"
 
@@ -21,11 +22,18 @@ struct TipFriction {
 /// What a case lets expect of its fronts as cracks.
 struct FracturePrediction {
   fracture::Prediction of_fronts;
-  std::size_t n_nodes = 0;         ///< on the interface
-  bool covers_all = false;         ///< the first crack is the whole interface
+  std::size_t n_nodes = 0;  ///< on the interface
+  bool covers_all = false;  ///< the first crack is the whole interface
+  /// Of a patch where the fronts begin, over which slow slip runs away; not a number where none does, or
+  /// where friction does not weaken over a slip.
+  double nucleation_length_m = nan;
   std::string bodies;              ///< whose static response it is, in words
   std::vector<std::string> notes;  ///< what it leaves out, a line each
 };
+
+/// Where these take no statics and the law has a fracture energy: of prescribed tractions, the far edge not
+/// held.
+std::optional<FracturePrediction> quick_prediction(const input::Case& config);
 
 /// Solves the statics of the case's sample, with elements large enough for some hundreds of nodes on the
 /// interface.

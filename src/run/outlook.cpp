@@ -119,6 +119,16 @@ std::string doubt_of_beginning(const input::Case& config, const std::vector<Plac
 
 /// Empty, or that slip stops for want of length.
 std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) {
+  if (o.cracks) {
+    const auto& cracks = o.cracks->of_fronts;
+    if (cracks.starts || o.cracks->covers_all) return {};
+    if (std::isnan(cracks.critical_length_m))
+      return fmt::format("no crack from the first one, {:.3g} m, runs, however long: slip may stop near it",
+                         cracks.first_length_m);
+    return fmt::format(
+        "the first crack, {:.3g} m, is shorter than the {:.3g} m from which it runs: slip may stop near it",
+        cracks.first_length_m, cracks.critical_length_m);
+  }
   const auto& of = o.of_nodes;
   if (!of.griffith_half_length_m) return {};
   const double critical_m = 2 * *of.griffith_half_length_m;
@@ -229,6 +239,7 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   o.trigger_length_m = trigger_length_m(config);
   if (config.friction.has_state()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
   o.steady_sliding = steady_sliding(config, x_m);
+  o.cracks = quick_prediction(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
   if (const auto half_m = o.of_nodes.supershear_half_length_m;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "input/case.hpp"
+#include "run/fracture.hpp"
 #include "run/initial_state.hpp"
 #include "stability/rupture.hpp"
 
@@ -24,6 +25,8 @@ struct RuptureOutlook {
   std::optional<double> tip_slip_rate_m_per_s;
   /// Of such a law, in words: where friction weakens with the slip rate. Else empty.
   std::string steady_sliding;
+  /// Its fronts as cracks, where that is known quickly.
+  std::optional<FracturePrediction> cracks;
   std::vector<std::string> doubts;    ///< why nothing may rupture, a line each
   std::vector<std::string> cautions;  ///< what mesh and damping decide of it, a line each
 };

@@ -243,7 +243,8 @@ void measure(Result& result, const InitialState& initial) {
   const auto& config = result.config;
   const auto options = front_options(config, initial);
   result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
-  auto rupture = rupture_outlook(config, initial.common, initial.tributary_m);
+  result.rupture = rupture_outlook(config, initial.common, initial.tributary_m);
+  auto rupture = result.rupture;
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
   result.warnings = notes_of_case(config, rupture, result.step_s);

@@ -49,6 +49,7 @@ struct Result {
   double stepping_wall_s = 0;
   motion::Event event;
   std::vector<fronts::Front> fronts;
+  RuptureOutlook rupture;
   std::vector<std::string> warnings;
   std::optional<SharedCost> shared;  ///< of several ranks
 

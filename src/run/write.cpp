@@ -241,7 +241,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                {"node_updates_per_s",
                 static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s},
                {"statics", statics_json(initial)},
-               {"rupture", rupture_json(rupture_outlook(result.config, initial.common, initial.tributary_m))},
+               {"rupture", rupture_json(result.rupture)},
                {"energy_at_start", energy_json(event.energies.front())},
                {"energy_at_end", energy_json(event.energies.back())},
                {"onsets", event.record.n_onsets()},

@@ -13,13 +13,6 @@ namespace slipfront::stability {
 
 namespace {
 
-/// mu* of two bodies of this material.
-double modulus_of_equals_Pa(const solid::Material& material) {
-  const double nu = material.poissons_ratio;
-  const double G = solid::shear_modulus_Pa(material);
-  return material.plane == solid::Plane::strain ? G / (1 - nu) : G * (1 + nu);
-}
-
 double drop_ratio_of(const NodeBefore& node) {
   return (node.t_Pa - node.residual_Pa) / (node.strength_Pa - node.residual_Pa);
 }
@@ -84,8 +77,8 @@ std::string regime_of(const Outlook& o, Pair pair) {
 }  // namespace
 
 double modulus_Pa(const Bodies& bodies) {
-  const double below_per_Pa = bodies.below ? 1 / modulus_of_equals_Pa(*bodies.below) : 0;
-  return 2 / (1 / modulus_of_equals_Pa(bodies.above) + below_per_Pa);
+  const auto c = compliance(bodies, 1, 0);
+  return -2 * solid::shear_modulus_Pa(bodies.above) * (c.yy / c.determinant).real();
 }
 
 double nucleation_length_m(double modulus_Pa, double strength_drop_Pa, double d_c_m) {

@@ -12,9 +12,9 @@
 // over d_c.
 namespace slipfront::stability {
 
-/// mu*, such that a slip zone of length L with uniform stress drop T slips by about T L/mu*: G/(1 - nu) of
-/// two equal bodies in plane strain, G (1 + nu) in plane stress, twice that on the rigid plane, the harmonic
-/// mean of unlike bodies. The coupling of slip and pressure is left out.
+/// mu*: a pattern of slip delta exp(i k x) at rest changes t by -mu* |k| delta/2 between bodies that stay in
+/// contact. G/(1 - nu) of two equal bodies in plane strain, G (1 + nu) in plane stress. What slip changes the
+/// pressure by is left out.
 double modulus_Pa(const Bodies& bodies);
 
 /// Length of the slip zone at which slow slip becomes unstable under linear slip weakening, whatever the

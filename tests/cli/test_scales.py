@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cases of any material and size: defaults that follow the plate, what is foreseen, and how events end."""
 
+import math
 import re
 from pathlib import Path
 
@@ -46,6 +47,8 @@ kind = "nucleation"
 half_length_m = {half}
 taper_m = 0
 """
+#: mu* of the default material on the rigid plane, 8 G/(3 - nu) in plane stress.
+MODULUS_PA = 4 * 2.6e9 / ((1 + 0.37) * (3 - 0.37))
 
 
 def test_slow_nucleation_in_a_stiff_block_is_followed(program, write_case, tmp_path):
@@ -94,7 +97,9 @@ def test_a_process_zone_that_is_not_resolved(program, write_case, tmp_path):
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out", "--overwrite"]):
         assert note not in program(*command).stdout
         printed = program(*command, *sets("friction.d_c_m=1e-6")).stdout
-        assert f"note: the process zone has 0.766 elements at rest and fewer in motion; {note}\n" in printed
+        elements = 9 * math.pi / 32 * MODULUS_PA * 1e-6 / 1.5e6 / 2e-3
+        of_zone = f"note: the process zone has {elements:.3g} elements at rest and fewer in motion"
+        assert f"{of_zone}; {note}\n" in printed
 
 
 def test_slip_that_stays_where_it_is_triggered_has_no_speed(program, write_case):
@@ -107,12 +112,14 @@ def test_slip_that_stays_where_it_is_triggered_has_no_speed(program, write_case)
 
 def test_what_info_tells_of_a_rupture(program, write_case):
     printed = program("info", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))).stdout
-    # S = (3 - 2.1)/(2.1 - 1.5); mu* = E on the rigid plane in plane stress
+    # S = (3 - 2.1)/(2.1 - 1.5)
     assert "strength excess S               1.5, 1.5, 1.5" in printed
     assert "seismic ratio 1/(1 + S)         0.4, 0.4, 0.4" in printed
-    assert f"nucleation length               {1.158 * 2.6e9 * 4e-6 / 1.5e6:.3g} m" in printed
-    assert "critical crack length           0.0276 m" in printed
-    assert "process zone at rest            0.00613 m, 3.06 elements" in printed
+    assert f"nucleation length               {1.158 * MODULUS_PA * 4e-6 / 1.5e6:.3g} m" in printed
+    critical_m = 2 * MODULUS_PA * 1.5e6 * 4e-6 / (math.pi * 0.6e6**2)
+    assert f"critical crack length           {critical_m:.3g} m" in printed
+    zone_m = 9 * math.pi / 32 * MODULUS_PA * 4e-6 / 1.5e6
+    assert f"process zone at rest            {zone_m:.3g} m, {zone_m / 2e-3:.3g} elements" in printed
     assert "S < 1.77: fronts above c_S can form" in printed
 
 

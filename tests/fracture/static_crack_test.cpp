@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "stability/rupture.hpp"
+
 namespace slipfront::fracture {
 namespace {
 
@@ -79,6 +81,24 @@ TEST(StaticCrack, IsThatOfTheWholeEquations) {
     EXPECT_NEAR(crack.energy_release_rate_J_per_m2(side), expected, 1e-10 * expected);
     crack.release(side);
   }
+}
+
+TEST(StaticCrack, NucleationLengthIsUenishiAndRices) {
+  // 1.158 mu*/W; mu* = E/2 of alike bodies in plane stress. Pressure has a part on the rigid plane: there the
+  // coefficient is 0.
+  const auto m = material();
+  const std::size_t n = 201;
+  const double h = 1e-3, weakening = 2e10;
+  for (const auto& bodies : {Bodies(m, m), Bodies(m)}) {
+    const double expected_m = stability::nucleation_length_m(stability::modulus_Pa(bodies), weakening, 1);
+    for (const std::size_t node : {100, 0}) {  // half-spaces go on beyond the last node
+      const double found_m = nucleation_length_m(response_of_half_spaces(bodies, places(n, h)),
+                                                 std::vector(n, 0.0), std::vector(n, weakening), node);
+      EXPECT_NEAR(found_m, expected_m, 0.75 * h);
+    }
+  }
+  EXPECT_TRUE(std::isnan(nucleation_length_m(response_of_half_spaces(Bodies(m, m), places(n, h)),
+                                             std::vector(n, 0.0), std::vector(n, 1e8), 100)));
 }
 
 TEST(StaticCrack, NoEnergyWithoutDropAndNoneBeyondTheEnds) {

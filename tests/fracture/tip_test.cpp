@@ -159,13 +159,5 @@ TEST(Tip, ExponentOfSlip) {
   EXPECT_NEAR(slip_exponent(rigid, 1e-6 * c_S, 0.6, Direction::against_slip), 0.5 + eps, 1e-6);
 }
 
-TEST(Tip, SpeedOfShareIsItsInverse) {
-  const auto m = material(0.33);
-  for (const auto& bodies : {Bodies(m), Bodies(m, m)}) {
-    EXPECT_EQ(speed_of_share_m_per_s(bodies, 1.2), 0);
-    EXPECT_NEAR(speed_factor(bodies, speed_of_share_m_per_s(bodies, 0.6)), 0.6, 1e-9);
-  }
-}
-
 }  // namespace
 }  // namespace slipfront::fracture

@@ -86,11 +86,9 @@ OUTSIDE = [
 INSTALLED_WITH = {"fmt", "unistd.h", "immintrin.h"}
 
 
-def test_headers_for_programs_outside_need_no_library_but_fmt():
-    src = ROOT / "src"
-    named = [src / name for name in OUTSIDE]
-    headers = [h for place in named for h in ([place] if place.is_file() else place.rglob("*.hpp"))]
-    libraries: dict[str, Path] = {}
+def reached(files: list[Path]) -> tuple[set[Path], dict[str, Path]]:
+    """All files that these include, and the libraries that they name, each with one that does."""
+    headers, libraries = list(files), dict[str, Path]()
     seen: set[Path] = set()
     while headers:
         header = headers.pop()
@@ -98,16 +96,31 @@ def test_headers_for_programs_outside_need_no_library_but_fmt():
             continue
         seen.add(header)
         text = header.read_text(encoding="utf-8")
-        headers += [src / name for name in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE)]
+        names = re.findall(r'^#include "([^"]+)"', text, re.MULTILINE)
+        headers += [ROOT / name if name.startswith("papers/") else ROOT / "src" / name for name in names]
         for name in re.findall(r"^#include <([^>]+)>", text, re.MULTILINE):
             if "." in name or "/" in name:
                 libraries[name.split("/")[0]] = header
+    return seen, libraries
+
+
+def test_headers_for_programs_outside_need_no_library_but_fmt():
+    src = ROOT / "src"
+    named = [src / name for name in OUTSIDE]
+    seen, libraries = reached(
+        [h for place in named for h in ([place] if place.is_file() else place.rglob("*.hpp"))]
+    )
     assert src / "motion/event.hpp" in seen
     assert set(libraries) <= INSTALLED_WITH, libraries
     installed = re.search(
         r"^foreach\(module ([^)]*)\)", (ROOT / "cmake/install.cmake").read_text(), re.MULTILINE
     )
     assert {header.relative_to(src).parts[0] for header in seen} <= set(installed[1].split())
+
+
+def test_the_python_module_of_a_wheel_needs_no_library_but_fmt_and_nanobind():
+    _, libraries = reached(list((ROOT / "src/python").glob("*.?pp")))
+    assert set(libraries) <= INSTALLED_WITH | {"nanobind"}, libraries
 
 
 @pytest.mark.slow
