@@ -28,6 +28,7 @@ namespace slip_patch { Outcome verify(Effort effort); }
 namespace crack { Outcome verify(Effort effort); }
 namespace static_crack { Outcome verify(Effort effort); }
 namespace self_similar_crack { Outcome verify(Effort effort); }
+namespace steady_strip { Outcome verify(Effort effort); }
 namespace layer_spectrum { Outcome verify(Effort effort); }
 namespace impact { Outcome verify(Effort effort); }
 namespace block { Outcome verify(Effort effort); }

@@ -60,6 +60,7 @@ std::span<const Verification> verifications() {
       Verification{"static_crack", "Energy release rate of cracks at rest", static_crack::verify},
       Verification{"self_similar_crack", "Fracture energy and speed of a crack that grows from a point",
                    self_similar_crack::verify},
+      Verification{"steady_strip", "Fronts that are driven along a strip", steady_strip::verify},
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;
