@@ -245,7 +245,7 @@ Curve thinned(const Curve& all, const std::string& label) {
 }
 
 const char* const zone_reason = "cohesive zone over the height";
-const char* const change_reason = "range of the breakdown work along the way: the strip rings";
+const char* const change_reason = "range of the breakdown work along the way: it rings and settles";
 const char* const both_reasons = "cohesive zone over the height, and that range";
 
 void of_two_bodies(double h_m, Outcome& outcome) {

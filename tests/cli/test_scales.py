@@ -91,6 +91,15 @@ def test_why_nothing_will_rupture(program, write_case, tmp_path, t, half, note):
     assert any(note in warning for warning in run_json(tmp_path / "out")["warnings"])
 
 
+def test_the_crack_of_the_sample_tells_whether_slip_may_stop(program, write_case):
+    case = write_case(PRESTRESSED.format(t=2.1e6, half=4e-3))
+    for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):
+        printed = program(*command, *sets("plate.top=absorbing")).stdout
+        noted = re.search(r"the first crack, (\S+) m, is shorter than the (\S+) m from which it runs", printed)
+        assert 8e-3 <= float(noted[1]) < float(noted[2]) < 0.04
+        assert "(Griffith)" not in printed
+
+
 def test_a_process_zone_that_is_not_resolved(program, write_case, tmp_path):
     case = write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))
     note = "below 3 the mesh decides on fronts and their speeds"
