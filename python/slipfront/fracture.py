@@ -16,7 +16,7 @@ from slipfront.errors import CaseError
 from slipfront.given import array, column, number, refusing
 from slipfront.measures import Arrays, history_arrays
 from slipfront.opened import OpenRun
-from slipfront.ranges import beyond
+from slipfront.ranges import RANGES, beyond
 from slipfront.running import CaseLike, make_case
 from slipfront.units import attributes, unit_of
 
@@ -164,8 +164,9 @@ def fracture_of_history(
     case = case_of_bodies(bodies)
     with refusing():
         found = _core.fracture_of_history(
-            case, time_s, x_m, *fields.values(), points["front_id"], points["direction_of_point"], node,
-            points["x_m"], points["onset_s"], points["v_tip_m_per_s"], points["t_s_Pa"], threshold, cohesion,
+            case, time_s, x_m, fields["slip_m"], rate, t, p, points["front_id"],
+            points["direction_of_point"], node, points["x_m"], points["onset_s"], points["v_tip_m_per_s"],
+            points["t_s_Pa"], threshold, cohesion,
         )  # fmt: skip
     require_agreement(time_s, fields["slip_m"], rate)
     done = found["breakdown_complete"] == 1
@@ -222,4 +223,4 @@ def notes_on(interval_s: float, found: Mapping[str, np.ndarray]) -> list[str]:
     if samples < FEWEST_SAMPLES:
         raise CaseError(f"history: {told}: the breakdown falls between them; give finer ones")
     notes = [f"{told}: Gamma is rough"] if samples < FEW_SAMPLES else []
-    return notes + beyond({name: float(np.median(of)) for name, of in found.items()})
+    return notes + beyond({name: float(np.median(of)) for name, of in found.items() if name in RANGES})

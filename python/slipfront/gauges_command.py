@@ -29,7 +29,7 @@ OF_FIT = (
 #: Names in messages and their options.
 OPTIONS = (
     "speed_m_per_s", "direction", "r_min_m", "r_max_m", "passages", "low_pass_Hz", "zero_s", "window_s",
-    "shift_s", "within_s", "youngs_modulus_Pa", "density_kg_per_m3",
+    "shift_s", "within_s",
 )  # fmt: skip
 
 
@@ -118,7 +118,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--within-s", metavar="S", type=float, default=50e-6, help="largest shift of clocks that is "
         "tried, by default 50e-6")  # fmt: skip
     options = parser.parse_args(arguments)
-    others, of = (OF_COMPARISONS, "a comparison: give --compare DIR, or leave it out")
+    others: tuple[str, ...] = OF_COMPARISONS
+    of = "a comparison: give --compare DIR, or leave it out"
     if options.compare is not None:
         others, of = OF_FITS, "a fit: leave it out beside --compare"
     for name in others:
@@ -194,7 +195,7 @@ def with_error(value: float, error: float) -> str:
 
 def line_of(fit: TipFit) -> str:
     if not fit.has_tip:
-        return f"{fit.gauge}: {'; '.join(fit.doubts)}"
+        return in_words(f"{fit.gauge}: {'; '.join(fit.doubts)}")
     told = (
         f"{fit.gauge}: front to {'+x' if fit.direction > 0 else '-x'} passes at "
         f"{with_error(1e6 * fit.tip_s, 1e6 * fit.tip_error_s)} us, V = "
@@ -202,7 +203,7 @@ def line_of(fit: TipFit) -> str:
         f"{with_error(fit.Gamma_J_per_m2, fit.Gamma_error_J_per_m2)} J/m2, residual "
         f"{100 * fit.residual_of_all:.0f} %"
     )
-    return "; ".join([told, *fit.doubts])
+    return in_words("; ".join([told, *fit.doubts]))
 
 
 def lines_of_comparison(found: xr.Dataset) -> list[str]:

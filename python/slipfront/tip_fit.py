@@ -23,7 +23,7 @@ from slipfront.running import CaseLike
 
 LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
 LARGE_ERROR = 0.5  # of Gamma
-NO_TIP = 0.8  # of the record is left by a tip's field: none has passed
+LEAST_SIGNAL = 5  # of K, the tip's speed and time given, over its error: below, none has passed
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
 LEAST_TIMES = 8
@@ -64,10 +64,11 @@ class TipFit:
         return self.direction != 0
 
 
-def no_tip(gauge: Gauge, why: str) -> TipFit:
+def no_tip(gauge: Gauge, why: str, doubts: list[str]) -> TipFit:
     numbers = (np.nan,) * 8
     return TipFit(
-        gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0, [f"no front passes: {why}"],
+        gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0,
+        [f"no front passes: {why}", *doubts],
         np.empty(0), {},
     )  # fmt: skip
 
@@ -183,18 +184,18 @@ def tip_field(
     if not tip.limiting_speed_m_per_s > V:
         raise CaseError(f"speed_m_per_s is {V:g} m/s; the field ends at {tip.limiting_speed_m_per_s:.5g} m/s")
     K = np.sqrt(number(Gamma_J_per_m2, "Gamma_J_per_m2", least=0) / tip.energy_per_K2)
-    shapes = []
-    for name, given in (("x_m", x_m), ("y_m", y_m)):
-        shape = np.shape(given)
-        shapes.append(array(np.ravel(given), name).reshape(shape))
+    shapes = [
+        np.asarray(number(of, name)) if np.ndim(of) == 0 else array(np.ravel(of), name).reshape(np.shape(of))
+        for name, of in (("x_m", x_m), ("y_m", y_m))
+    ]
     try:
         x, y = np.broadcast_arrays(*shapes)
     except ValueError:
         raise CaseError(
             f"x_m has the shape {shapes[0].shape}, y_m {shapes[1].shape}: give one of both"
         ) from None
-    of = tip.stress_per_K if flag(stress, "stress") else tip.strain_per_K
-    found = of(np.ascontiguousarray(x.ravel()), np.ascontiguousarray(y.ravel()))
+    per_K = tip.stress_per_K if flag(stress, "stress") else tip.strain_per_K
+    found = per_K(np.ascontiguousarray(x.ravel()), np.ascontiguousarray(y.ravel()))
     return {part: K * of.reshape(x.shape) for part, of in zip(COMPONENTS, found, strict=True)}
 
 
@@ -302,7 +303,10 @@ def sought(
     order = ranked([end[0] for end in ended])
     if not order:
         return no_tip(
-            gauge, f"nothing changes, or fewer than {LEAST_TIMES} times are within {r_m[1]:g} m of a tip"
+            gauge,
+            f"nothing changes, or fewer than {LEAST_TIMES} times are within r_max_m = {r_m[1]:g} m of a tip: "
+            "give a larger one, or check the units of y and time",
+            beyond({"limiting_speed_m_per_s": limit}),
         )
     _, tip, v, t, at = ended[order[0]]
     return result(tip, v, t, at, given, limit)
@@ -371,8 +375,15 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
         slopes.append(((moved[0] - moved[1]) / (2 * dv))[:, None])
     jacobian = np.hstack(slopes)
     scale = np.linalg.norm(jacobian, axis=0)
-    free = max(data.size - jacobian.shape[1], 1)
-    variance = (left**2).sum() / free * correlated(left)
+    variance = (left**2).sum() / max(data.size / correlated(left) - jacobian.shape[1], 1)
+    largest = "strain" if gauge.is_strain else "stress_Pa"
+    doubts = beyond({"limiting_speed_m_per_s": limit, largest: float(np.abs(about_mean).max())})
+    of_K = np.linalg.pinv((columns / size).T @ (columns / size))[0, 0] / size[0] ** 2
+    signal = abs(K) / float(np.sqrt(max(variance * of_K, 1e-300)))
+    if signal < LEAST_SIGNAL:
+        return no_tip(
+            gauge, f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed", doubts
+        )
     covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
     errors = np.sqrt(np.diag(covariance))
     i_tip, i_speed = columns.shape[1], columns.shape[1] + 1
@@ -386,16 +397,13 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
         slope[i_speed] = K**2 * (per_K2(speed + dv / 10) - per_K2(speed - dv / 10)) / (dv / 5)
     Gamma, Gamma_error = K**2 * per_K2(speed), float(np.sqrt(slope @ covariance @ slope))
     of_all = float(np.sqrt((left**2).sum() / max((about_mean**2).sum(), 1e-300)))
-    largest = float(np.abs(about_mean).max())
-    if of_all > NO_TIP:
-        return no_tip(gauge, f"the field of a tip leaves {100 * of_all:.0f} % of the record")
-    doubts = beyond({"Gamma_J_per_m2": Gamma, "strain" if gauge.is_strain else "stress_Pa": largest})
+    doubts += beyond({"Gamma_J_per_m2": Gamma})
     if of_all > LARGE_RESIDUAL:
         doubts.append(f"the residual is {100 * of_all:.0f} % of the record: it is not that of such a tip")
     if not given and not 0.03 * limit < speed < 0.997 * limit:
-        doubts.append("the speed went to the end of its range: give it")
-    if Gamma_error > LARGE_ERROR * Gamma:
-        doubts.append("the record hardly determines Gamma" + ("" if given else ": give the speed"))
+        doubts.append(f"V went to the end of its range, 0 to {limit:.5g} m/s: give speed_m_per_s")
+    if not Gamma_error <= LARGE_ERROR * Gamma:
+        doubts.append("the record hardly determines Gamma" + ("" if given else ": give speed_m_per_s"))
     if K < 0:
         doubts.append("K is negative: the body above slips to -x")
     time_s = tip.time_s[at]
@@ -501,13 +509,13 @@ def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
         x, first = np.unique([f.x_m for f in same], return_index=True)
         if len(x) < 2:
             raise CaseError(
-                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give a number"
+                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give speed_m_per_s in m/s"
             )
         tips = np.array([f.tip_s for f in same])[first]
         slowness = np.gradient(tips, x, edge_order=2 if len(x) > 2 else 1)[np.searchsorted(x, fit.x_m)]
         if not slowness * way > 0:
             raise CaseError(
-                f"gauge {fit.gauge}: its neighbours' tips do not follow one another; give a speed"
+                f"gauge {fit.gauge}: its neighbours' tips do not follow one another: give speed_m_per_s, m/s"
             )
         made.append(float(way / slowness))
     return made

@@ -348,30 +348,36 @@ def of_own_history(run):
     return found.isel(point=both.to_numpy()), run.fracture.isel(point=both.to_numpy()), found.notes
 
 
-# Samples, in the time in which friction weakens, 3 us: 6 and 60. A trapezoid cuts off the peak between two.
-@pytest.mark.parametrize("interval_s, error, rough", [(0.5e-6, 0.15, True), (0.05e-6, 0.02, False)])
-def test_a_history_gives_what_the_run_has(tmp_path, interval_s, error, rough):
+@pytest.mark.parametrize(
+    "interval_s, work_error, time_error", [(0.5e-6, 0.05, 0.2), (0.2e-6, 0.01, 0.1), (0.1e-6, 0.005, 0.08)]
+)
+def test_a_history_gives_what_the_run_has(tmp_path, interval_s, work_error, time_error):
+    """The table of docs/other-codes.md: the peak lies between two samples."""
     run = slipfront.run(
         CASE, {"output.history_interval_s": interval_s}, output=tmp_path / "out", progress=False
     )
     found, own, notes = of_own_history(run)
-    for name in ("breakdown_work_J_per_m2", "weakening_distance_m", "weakening_time_s", "cohesive_zone_m"):
+    for name, error in (
+        ("breakdown_work_J_per_m2", work_error),
+        ("weakening_distance_m", 2 * work_error),
+        ("K_Pa_sqrt_m", work_error),
+        ("weakening_time_s", time_error),
+        ("cohesive_zone_m", time_error),
+        ("G_slip_J_per_m2", 0.01),
+    ):
         ratio = (found[name] / own[name]).dropna("point")
-        assert abs(float(ratio.median()) - 1) < error, name
+        assert ratio.sizes["point"] > 60 and abs(float(ratio.median()) - 1) < error, name
     np.testing.assert_allclose(found.residual_coefficient, own.residual_coefficient, rtol=1e-6)
     np.testing.assert_allclose(found.stress_drop_Pa, own.stress_drop_Pa, rtol=1e-3)
-    assert [note.endswith("Gamma is rough") for note in notes] == [True] * rough
-    # The slip behind the tip is the same; the cohesive zone, which sets the distances, is not quite.
-    G = (found.G_slip_J_per_m2 / own.G_slip_J_per_m2).dropna("point")
-    assert G.sizes["point"] > 10 and abs(float(G.median()) - 1) < error
+    assert [note.endswith("Gamma is rough") for note in notes] == [True] * (interval_s == 0.5e-6)
 
 
 D_C_M, SLIP_RATE, FRONT_SPEED = 2e-6, 1.0, 500.0
 
 
 def made_history(pressure_rise=0.0, interval_s=0.1e-6):
-    """A front to each side at 500 m/s; friction falls from 0.6 to 0.4 over d_c, linear in slip, under a pressure
-    that rises by a share over the same slip."""
+    """A front to each side at 500 m/s; friction falls from 0.6 to 0.4 over d_c, linear in slip, under a
+    pressure that rises by a share over the same slip."""
     time_s, x_m = np.arange(0, 40e-6, interval_s), np.linspace(-5e-3, 5e-3, 41)
     slipping_s = np.round(time_s[:, None] - 5e-6 - np.abs(x_m) / FRONT_SPEED, 12)
     weakened = np.clip(SLIP_RATE * slipping_s / D_C_M, 0, 1)
@@ -460,4 +466,4 @@ def test_units_and_fronts_refused():
             slipfront.fracture_of_history(given, those, bodies)
     pressures = changed(p_Pa=history["p_Pa"] / 1e6)
     (note,) = slipfront.fracture_of_history(pressures, fronts, BODIES).notes
-    assert "residual_coefficient is 4e+05, not from" in note
+    assert note.startswith("residual_coefficient is 4e+05, not from") and "units of t_Pa and p_Pa" in note
