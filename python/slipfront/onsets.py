@@ -69,6 +69,9 @@ def columns_of(
                     "rename one of them"
                 )
             chosen[quantity] = name, units[unit]
+    if any(name not in chosen for name in needed):
+        has = ", ".join(f"'{one_line(name)}'" for name in names) or "none"
+        raise DataError(f"{where}: has the columns {has}; wanted are {wanted}")
     for quantity, name in without_unit.items():
         if quantity not in chosen:
             called, units = quantities[quantity]
@@ -76,9 +79,6 @@ def columns_of(
                 f"{where}: column '{one_line(name)}' names none of the units {', '.join(units)}: call it "
                 f"{called[0]}_{next(iter(units))} or so"
             )
-    if any(name not in chosen for name in needed):
-        has = ", ".join(f"'{one_line(name)}'" for name in names) or "none"
-        raise DataError(f"{where}: has the columns {has}; wanted are {wanted}")
     return chosen
 
 

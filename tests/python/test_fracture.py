@@ -415,6 +415,17 @@ def test_a_history_of_known_fracture_energy(pressure_rise):
     assert float(found.K_Pa_sqrt_m.median()) > 0
 
 
+def test_the_page_of_other_codes_runs():
+    """The last code of docs/other-codes.md, which takes a history of any origin."""
+    text = (ROOT / "docs/other-codes.md").read_text(encoding="utf-8")
+    *_, code = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    history = made_history()
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    names = {"slipfront": slipfront, "history": history, "fronts": fronts}
+    exec(code, names)
+    np.testing.assert_allclose(names["fracture"].breakdown_work_J_per_m2, 1.0, rtol=1e-6)
+
+
 def test_slip_to_the_left_has_the_same_energy():
     history = made_history()
     for name in ("slip_m", "slip_rate_m_per_s", "t_Pa"):

@@ -236,11 +236,8 @@ def test_forms_of_records(tmp_path):
         ("x_m,y_m,time_s\n0,1,0\n", "has none of strain, stress"),
         ("x_m,y_m,strain_xx\n0,1,0\n", "has the columns 'x_m', 'y_m', 'strain_xx'; wanted are gauge, x, y"),
         ("x_m,y_m,time_s,stress_xx\n0,1,0,1\n", "column 'stress_xx' names none of the units Pa, kPa, MPa"),
-        (
-            "x,y_m,time_s,strain_xx\n0,1,0,1\n",
-            "column 'x' names none of the units m, cm, mm, um, km: call it x_m",
-        ),
-        ("x_m,y_m,time (min),strain_xx\n0,1,0,1\n", r"column 'time \(min\)' names none of the units s, ms"),
+        ("x,y_m,time_s,strain_xx\n0,1,0,1\n", "wanted are gauge, x, y and time with their units and"),
+        ("x_m,y_m,time_s,strain_xx,stress_yy (psi)\n0,1,0,1,1\n", r"'stress_yy \(psi\)' names none of the"),
         ("x_m,y_m,time_s,strain_xx,stress_yy_Pa\n0,1,0,1,1\n", "several kinds"),
         ("x_m,y_m,time_s,strain_0,strain_90\n0,1,0,1,1\n", "a rosette has three arms, not 2"),
         ("x_m,y_m,time_s,strain_0,strain_180,strain_90\n0,1,0,1,1,1\n", "do not determine the strain"),
