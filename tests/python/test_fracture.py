@@ -435,6 +435,16 @@ def test_slip_to_the_left_has_the_same_energy():
     np.testing.assert_allclose(found.breakdown_work_J_per_m2, 1.0, rtol=1e-6)
 
 
+def test_cohesion_is_no_part_of_the_coefficients():
+    history = made_history()
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    with_cohesion = {**history, "t_Pa": history["t_Pa"] + 1e6}
+    found = slipfront.fracture_of_history(with_cohesion, fronts, BODIES, cohesion_Pa=1e6)
+    np.testing.assert_allclose(found.breakdown_work_J_per_m2, 1.0, rtol=1e-6)
+    np.testing.assert_allclose(found.residual_coefficient, 0.4, rtol=1e-9)
+    np.testing.assert_allclose(found.residual_t_Pa, 3e6, rtol=1e-9)
+
+
 def changed(**new):
     return {**made_history(), **new}
 
