@@ -146,8 +146,8 @@ def fracture_of_history(
     samples. In the attribute notes: what speaks against the numbers. Raises CaseError, also where the
     breakdown falls between two samples."""
     time_s, x_m, rate, t, p = history_arrays(history)
-    fields = {"slip_m": column(history, "history", "slip_m", dims=2), "slip_rate_m_per_s": rate}
-    fields |= {"t_Pa": t, "p_Pa": p}
+    slip = column(history, "history", "slip_m", dims=2)
+    fields = {"time_s": time_s, "x_m": x_m, "slip_m": slip, "slip_rate_m_per_s": rate, "t_Pa": t, "p_Pa": p}
     for name, values in fields.items():
         if not np.isfinite(values).all():
             raise CaseError(f"history['{name}'] holds a value that is not finite")
@@ -156,19 +156,17 @@ def fracture_of_history(
             raise CaseError(f"history['{name}'] is in {unit}; give it in {unit_of(name)}")
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0, finite=True)
     cohesion = number(cohesion_Pa, "cohesion_Pa", least=0, finite=True)
-    points = {
-        name: column(fronts, "fronts", name)
-        for name in ("front_id", "direction_of_point", "x_m", "onset_s", "v_tip_m_per_s", "t_s_Pa")
-    }
+    places = ("front_id", "direction_of_point", "x_m", "onset_s")
+    points = {name: column(fronts, "fronts", name, finite=True) for name in places}
+    points |= {name: column(fronts, "fronts", name) for name in ("v_tip_m_per_s", "t_s_Pa")}
     node = nodes_of(points, x_m)
     case = case_of_bodies(bodies)
     with refusing():
         found = _core.fracture_of_history(
-            case, time_s, x_m, fields["slip_m"], rate, t, p, points["front_id"],
-            points["direction_of_point"], node, points["x_m"], points["onset_s"], points["v_tip_m_per_s"],
-            points["t_s_Pa"], threshold, cohesion,
+            case, time_s, x_m, slip, rate, t, p, points["front_id"], points["direction_of_point"], node,
+            points["x_m"], points["onset_s"], points["v_tip_m_per_s"], points["t_s_Pa"], threshold, cohesion,
         )  # fmt: skip
-    require_agreement(time_s, fields["slip_m"], rate)
+    require_agreement(time_s, slip, rate)
     done = found["breakdown_complete"] == 1
     if not done.any():
         raise CaseError("history: no front's breakdown came to its end within it; give a longer one")
@@ -192,11 +190,11 @@ def nodes_of(points: Mapping[str, np.ndarray], x_m: np.ndarray) -> np.ndarray:
         raise CaseError("fronts: there are none")
     if len(x_m) < 2 or not (np.diff(x_m) > 0).all():
         raise CaseError("history['x_m'] must ascend and have two values or more")
-    node = np.abs(at[:, None] - x_m[None, :]).argmin(axis=1)
+    node = np.searchsorted(0.5 * (x_m[1:] + x_m[:-1]), at)
     away = np.abs(x_m[node] - at) > 0.01 * np.diff(x_m).min()
-    if not np.isfinite(at).all() or away.any():
+    if away.any():
         raise CaseError(
-            f"fronts['x_m']: {at[away][:1]} m is no place of the history; give fronts found in it"
+            f"fronts['x_m']: {at[away][0]:g} m is no place of the history; give fronts found in it"
         )
     same = np.diff(points["front_id"]) == 0
     if not (np.diff(at) * points["direction_of_point"][1:] > 0)[same].all():
