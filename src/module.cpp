@@ -13,6 +13,7 @@ NB_MODULE(_core, module) {
   slipfront::python::bind_compose(module);
   slipfront::python::bind_fronts(module);
   slipfront::python::bind_fracture(module);
+  slipfront::python::bind_passages(module);
   slipfront::python::bind_fits(module);
   slipfront::python::bind_gauges(module);
   slipfront::python::bind_kammer2012(module);

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from slipfront.errors import Error as Error
     from slipfront.errors import WriteError as WriteError
     from slipfront.files import DataError as DataError
+    from slipfront.fracture import fracture_of_history as fracture_of_history
     from slipfront.fracture import predict_fronts as predict_fronts
     from slipfront.gauges import Gauge as Gauge
     from slipfront.gauges import compare_gauges as compare_gauges
@@ -97,6 +98,7 @@ _PLACES = {
     "stable_step_s": "material",
     "wave_speeds": "material",
     "well_posedness": "material",
+    "fracture_of_history": "fracture",
     "predict_fronts": "fracture",
     "FrontSettings": "measures",
     "criteria": "measures",

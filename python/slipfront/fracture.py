@@ -13,10 +13,12 @@ from numpy.typing import ArrayLike
 import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import CaseError
-from slipfront.given import array, number
+from slipfront.given import array, column, number, refusing
+from slipfront.measures import Arrays, history_arrays
 from slipfront.opened import OpenRun
+from slipfront.ranges import RANGES, beyond
 from slipfront.running import CaseLike, make_case
-from slipfront.units import attributes
+from slipfront.units import attributes, unit_of
 
 #: At places x_m, or one value for all.
 AlongX = float | tuple[ArrayLike, ArrayLike]
@@ -24,6 +26,10 @@ AlongX = float | tuple[ArrayLike, ArrayLike]
 
 #: Columns of fracture.csv that a prediction by a run takes.
 MEASURED = ("breakdown_work_J_per_m2", "residual_coefficient", "breakdown_complete")
+#: Samples of a history in the time in which friction weakens: fewer do not tell the work, or roughly.
+FEWEST_SAMPLES, FEW_SAMPLES = 2, 8
+#: Slip over the integral of its rate, from its inverse to this, where both are in SI units.
+SLIP_AGREES = 10
 
 
 def along_x(given: AlongX | None, name: str, *, above: float | None) -> tuple[np.ndarray, np.ndarray]:
@@ -109,3 +115,111 @@ def predict_fronts(
     }
     points["direction"] = points["direction"].astype(np.int64)
     return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)
+
+
+def case_of_bodies(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
+    """The bodies of a run, a case, or a dictionary of its tables material and base, such as
+    {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane. No size counts."""
+    if isinstance(given, OpenRun):
+        given = {name: table for name, table in given.case.items() if name in ("material", "base")}
+    if isinstance(given, Mapping) and isinstance(base := given.get("base"), Mapping):
+        given = {**given, "base": {"height_m": 0.1, **base}} if base.get("kind") == "body" else given
+    return given if isinstance(given, _core.Case) else make_case(given, None, {})
+
+
+def fracture_of_history(
+    history: Arrays,
+    fronts: Arrays,
+    bodies: OpenRun | CaseLike | _core.Case,
+    *,
+    threshold_m_per_s: float = 1e-3,
+    cohesion_Pa: float = 0.0,
+) -> xr.Dataset:
+    """Fracture mechanics of the fronts in a history of an interface, as OpenRun.fracture has it of a run's.
+
+    history: time_s [times], x_m [nodes], slip_m, slip_rate_m_per_s, t_Pa and p_Pa [times, nodes].
+    fronts: of find_fronts_in_history; places are nodes of the history.
+    bodies: on both sides of the interface, see case_of_bodies.
+    threshold_m_per_s: a node slips while its slip rate is above it. cohesion_Pa: of t, beside what goes with
+    p.
+
+    Slip begins with the sample before the first one above the threshold; integrals are trapezoids over the
+    samples. In the attribute notes: what speaks against the numbers. Raises CaseError, also where the
+    breakdown falls between two samples."""
+    time_s, x_m, rate, t, p = history_arrays(history)
+    slip = column(history, "history", "slip_m", dims=2)
+    fields = {"time_s": time_s, "x_m": x_m, "slip_m": slip, "slip_rate_m_per_s": rate, "t_Pa": t, "p_Pa": p}
+    for name, values in fields.items():
+        if not np.isfinite(values).all():
+            raise CaseError(f"history['{name}'] holds a value that is not finite")
+        unit = getattr(history[name], "attrs", {}).get("units", unit_of(name))
+        if unit != unit_of(name):
+            raise CaseError(f"history['{name}'] is in {unit}; give it in {unit_of(name)}")
+    threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0, finite=True)
+    cohesion = number(cohesion_Pa, "cohesion_Pa", least=0, finite=True)
+    places = ("front_id", "direction_of_point", "x_m", "onset_s")
+    points = {name: column(fronts, "fronts", name, finite=True) for name in places}
+    points |= {name: column(fronts, "fronts", name) for name in ("v_tip_m_per_s", "t_s_Pa")}
+    node = nodes_of(points, x_m)
+    case = case_of_bodies(bodies)
+    with refusing():
+        found = _core.fracture_of_history(
+            case, time_s, x_m, slip, rate, t, p, points["front_id"], points["direction_of_point"], node,
+            points["x_m"], points["onset_s"], points["v_tip_m_per_s"], points["t_s_Pa"], threshold, cohesion,
+        )  # fmt: skip
+    require_agreement(time_s, slip, rate)
+    done = found["breakdown_complete"] == 1
+    if not done.any():
+        raise CaseError("history: no front's breakdown came to its end within it; give a longer one")
+    notes = notes_on(float(np.median(np.diff(time_s))), {name: of[done] for name, of in found.items()})
+    columns = {
+        "front_id": points["front_id"].astype(np.int64), "x_m": points["x_m"], "onset_s": points["onset_s"],
+        "direction": points["direction_of_point"], "v_tip_m_per_s": points["v_tip_m_per_s"], **found,
+    }  # fmt: skip
+    made = {name: xr.Variable(("point",), values, attributes(name)) for name, values in columns.items()}
+    coordinates = {name: made.pop(name) for name in ("front_id", "x_m", "onset_s")}
+    return xr.Dataset(made, coordinates, {"notes": notes})
+
+
+def nodes_of(points: Mapping[str, np.ndarray], x_m: np.ndarray) -> np.ndarray:
+    """Numbers of the nodes at which the points of fronts are."""
+    lengths = ", ".join(f"{name} {len(values)}" for name, values in points.items())
+    if len({len(values) for values in points.values()}) > 1:
+        raise CaseError(f"fronts: its arrays differ in length: {lengths}")
+    at = points["x_m"]
+    if len(at) == 0:
+        raise CaseError("fronts: there are none")
+    if len(x_m) < 2 or not (np.diff(x_m) > 0).all():
+        raise CaseError("history['x_m'] must ascend and have two values or more")
+    node = np.searchsorted(0.5 * (x_m[1:] + x_m[:-1]), at)
+    away = np.abs(x_m[node] - at) > 0.01 * np.diff(x_m).min()
+    if away.any():
+        raise CaseError(
+            f"fronts['x_m']: {at[away][0]:g} m is no place of the history; give fronts found in it"
+        )
+    same = np.diff(points["front_id"]) == 0
+    if not (np.diff(at) * points["direction_of_point"][1:] > 0)[same].all():
+        raise CaseError("fronts['x_m']: the points of a front do not follow its direction")
+    return node.astype(np.float64)
+
+
+def require_agreement(time_s: np.ndarray, slip_m: np.ndarray, rate: np.ndarray) -> None:
+    """Refuses slip and slip rate of different units."""
+    by_rate = float(np.abs(0.5 * (rate[1:] + rate[:-1]) * np.diff(time_s)[:, None]).sum())
+    own = float(np.abs(np.diff(slip_m, axis=0)).sum())
+    if own > SLIP_AGREES * by_rate or by_rate > SLIP_AGREES * own:
+        raise CaseError(
+            f"history: slip_m grows by {own:.3g} m in all, the integral of slip_rate_m_per_s over time_s by "
+            f"{by_rate:.3g} m; give m, m/s and s"
+        )
+
+
+def notes_on(interval_s: float, found: Mapping[str, np.ndarray]) -> list[str]:
+    """What speaks against the numbers of breakdowns that came to their end."""
+    weakens_s = float(np.median(found["weakening_time_s"]))
+    samples = weakens_s / interval_s
+    told = f"friction weakens within {weakens_s:.3g} s, samples of the history are {interval_s:.3g} s apart"
+    if samples < FEWEST_SAMPLES:
+        raise CaseError(f"history: {told}: the breakdown falls between them; give finer ones")
+    notes = [f"{told}: Gamma is rough"] if samples < FEW_SAMPLES else []
+    return notes + beyond({name: float(np.median(of)) for name, of in found.items() if name in RANGES})

@@ -17,7 +17,7 @@ import xarray as xr
 
 from slipfront.errors import CaseError
 from slipfront.files import DataError, one_line, read_table
-from slipfront.given import instance, number
+from slipfront.given import array, flag, in_order, instance, number, path, table, text
 from slipfront.onsets import LENGTHS, PRESSURES, QUANTITIES, TIMES, columns_of, in_si, name_and_unit
 from slipfront.opened import OpenRun
 from slipfront.read import require
@@ -45,19 +45,24 @@ class Gauge:
     smoothing_s: float = 0.0  # standard deviation of the filter that the record has passed
 
     def __post_init__(self) -> None:
-        if not self.values or any(name not in COMPONENTS for name in self.values):
-            raise CaseError(
-                f"gauge {self.name}: its components are {list(self.values)}; take some of xx, yy, xy"
-            )
+        of = f"gauge {text(self.name, 'the name of a gauge')}: "
+        for name in ("x_m", "y_m"):
+            number(getattr(self, name), f"{of}{name}")
+        number(self.smoothing_s, f"{of}smoothing_s", least=0, finite=True)
+        flag(self.is_strain, f"{of}is_strain")
+        values = table(self.values, f"{of}values")
+        if not values or any(name not in COMPONENTS for name in values):
+            raise CaseError(f"{of}its components are {list(values)}; take some of xx, yy, xy")
         if not np.isfinite([self.x_m, self.y_m]).all() or self.y_m == 0:
-            raise CaseError(
-                f"gauge {self.name}: is at x = {self.x_m}, y = {self.y_m} m; y must be finite and not 0"
-            )
-        arrays = [np.asarray(a, float) for a in (self.time_s, *self.values.values())]
-        if any(a.shape != arrays[0].shape or a.ndim != 1 or not np.isfinite(a).all() for a in arrays):
-            raise CaseError(f"gauge {self.name}: times and values must be finite arrays of one length")
-        if len(arrays[0]) < 2 or not (np.diff(arrays[0]) > 0).all():
-            raise CaseError(f"gauge {self.name}: needs two times or more that ascend")
+            raise CaseError(f"{of}is at x = {self.x_m}, y = {self.y_m} m; y must be finite and not 0")
+        time_s = array(self.time_s, f"{of}time_s")
+        made = {name: array(v, f"{of}values['{name}']") for name, v in values.items()}
+        if any(a.shape != time_s.shape or not np.isfinite(a).all() for a in (time_s, *made.values())):
+            raise CaseError(f"{of}times and values must be finite arrays of one length")
+        if len(time_s) < 2 or not (np.diff(time_s) > 0).all():
+            raise CaseError(f"{of}needs two times or more that ascend")
+        object.__setattr__(self, "time_s", time_s)
+        object.__setattr__(self, "values", made)
 
     def prepared(
         self,
@@ -72,8 +77,8 @@ class Gauge:
 
         low_pass_Hz: of a Gaussian filter without phase, at which it lets 0.71 pass. Where times are uneven
         the record is first interpolated to even ones. A fit passes its field through the same filter."""
-        time_s = np.asarray(self.time_s, float) + number(shift_s, "shift_s", finite=True)
-        values = {name: np.asarray(v, float) for name, v in self.values.items()}
+        time_s = self.time_s + number(shift_s, "shift_s", finite=True)
+        values = dict(self.values)
         smoothing_s = self.smoothing_s
         if zero_s is not None:
             inside = between(time_s, zero_s, f"gauge {self.name}: zero_s")
@@ -84,8 +89,8 @@ class Gauge:
             highest = 0.5 * (len(time_s) - 1) * lowest
             if not lowest <= cut_off <= highest:
                 raise CaseError(
-                    f"low_pass_Hz is {cut_off:g}; the record of {self.name} has {lowest:.4g} to "
-                    f"{highest:.4g} Hz"
+                    f"low_pass_Hz is {cut_off:g} Hz; the record of {self.name} resolves {lowest:.4g} to "
+                    f"{highest:.4g} Hz: give one of these"
                 )
             own_s = np.sqrt(np.log(2)) / (2 * np.pi * cut_off)
             time_s, values = filtered(time_s, values, own_s)
@@ -97,16 +102,20 @@ class Gauge:
 
     def peak(self, part: str) -> float:
         """The largest departure of a component from its median."""
-        values = np.asarray(self.values[part], float)
+        values = self.values[part]
         return float(np.abs(values - np.median(values)).max())
 
 
 def between(time_s: np.ndarray, ends_s: tuple[float, float], name: str) -> np.ndarray:
-    inside = (time_s >= ends_s[0]) & (time_s <= ends_s[1])
+    pair = in_order(ends_s, name, "a pair of times in s")
+    if len(pair) != 2:
+        raise CaseError(f"{name} has {len(pair)} parts; it must be a pair of times in s")
+    first, last = (number(end, f"an end of {name}") for end in pair)
+    inside = (time_s >= first) & (time_s <= last)
     if np.count_nonzero(inside) < 2:
         raise CaseError(
-            f"{name} is {ends_s[0]:g} to {ends_s[1]:g} s; the record goes from {time_s[0]:g} to "
-            f"{time_s[-1]:g} s"
+            f"{name} is {first:g} to {last:g} s; the record goes from {time_s[0]:g} to {time_s[-1]:g} s: "
+            "give two of its times or more"
         )
     return inside
 
@@ -191,16 +200,19 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     as read_onsets has them; strain has none, or ustrain. Without the column gauge there is one.
 
     Raises Error where the file is no such record."""
-    file = Path(file)
-    table = read_table(file, by_hand=True, separators=";\t,")
-    names = [name for name in table.header if name and name.strip().lower() not in GAUGE_NAMES]
+    file = path(file, "file")
+    rows_of_file = read_table(file, by_hand=True, separators=";\t,")
+    header = rows_of_file.header
+    names = [name for name in header if name and name.strip().lower() not in GAUGE_NAMES]
     chosen = columns_of(file, names, quantities(names), ("x_m", "y_m", "time_s"), WANTED)
-    read = {q: in_si(table.numbers(name), factor) for q, (name, factor) in chosen.items()}
+    read = {q: in_si(rows_of_file.numbers(name), factor) for q, (name, factor) in chosen.items()}
     for q, values in read.items():
         require(np.isfinite(values), file, f"column '{one_line(chosen[q][0])}' has an empty cell")
     of_all, is_strain = components(file, read)
-    column = next((name for name in table.header if name.strip().lower() in GAUGE_NAMES), None)
-    labels = np.array(table.texts(column) if column else ["gauge"] * len(table.rows), dtype=np.str_)
+    column = next((name for name in header if name.strip().lower() in GAUGE_NAMES), None)
+    labels = np.array(
+        rows_of_file.texts(column) if column else ["gauge"] * len(rows_of_file.rows), dtype=np.str_
+    )
     require(len(labels) > 0, file, "no rows")
     made = []
     for label in dict.fromkeys(labels.tolist()):
@@ -216,12 +228,19 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     return made
 
 
+def some_gauges(given: Iterable[Gauge]) -> list[Gauge]:
+    gauges = in_order(given, "gauges", "a list of gauges")
+    if not gauges:
+        raise CaseError("gauges is empty")
+    return [instance(gauge, Gauge, f"gauges[{k}]") for k, gauge in enumerate(gauges)]
+
+
 def gauges_of(run: OpenRun, *, stress: bool = False) -> list[Gauge]:
     """A run's probes as gauges of strain, or of stress. Raises CaseError for a run without probes."""
     probes = instance(run, OpenRun, "run").probes
     if probes is None:
         raise CaseError(f"{run.folder}: the run has no probes; give its case a table [probes]")
-    of = "stress_{}_Pa" if stress else "strain_{}"
+    of = "stress_{}_Pa" if flag(stress, "stress") else "strain_{}"
     found = []
     for name in probes.probe.values:
         at = probes.sel(probe=name)
@@ -262,8 +281,8 @@ class Beside:
     def __init__(self, gauge: Gauge, run: OpenRun) -> None:
         self.gauge = gauge
         self.parts = [part for part in COMPONENTS if part in gauge.values]
-        self.time_s = np.asarray(gauge.time_s, float)
-        self.measured = np.array([np.asarray(gauge.values[part], float) for part in self.parts])
+        self.time_s = gauge.time_s
+        self.measured = np.array([gauge.values[part] for part in self.parts])
         self.run_s, self.computed = at_place(run, gauge)
 
     def differences(self, shift_s: float) -> tuple[np.ndarray, np.ndarray]:
@@ -318,14 +337,14 @@ def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 5
     that of the record, both about their means, 0 where they agree; own_misfit at each gauge's own shift;
     shift_s and own_shift_s: the run's clock less the record's. NaN for components that were not recorded.
     Its attribute notes says what speaks against the comparison."""
-    besides = [Beside(gauge, run) for gauge in gauges]
-    if not besides:
-        raise CaseError("gauges is empty")
+    instance(run, OpenRun, "run")
+    besides = [Beside(gauge, run) for gauge in some_gauges(gauges)]
     within = number(within_s, "within_s", least=0, finite=True)
     shift = best_shift(besides, within)
     if not np.isfinite([b.misfit(shift) for b in besides][0]).all():
         raise CaseError(
-            f"records and run share less than half their times within {within:g} s of shift; shift the clock"
+            f"records and run share less than half of their times at each shift of the clock up to within_s "
+            f"= {within:g} s; widen it, or move the records' clock by shift_s, in s"
         )
     own = [best_shift([b], within) for b in besides]
     misfits = {name: np.full((len(besides), 3), np.nan) for name in ("misfit", "own_misfit")}
@@ -334,7 +353,11 @@ def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 5
         misfits["misfit"][k, at], misfits["own_misfit"][k, at] = b.misfit(shift), b.misfit(own[k])
     shifts = {"all together": shift} | {b.gauge.name: s for b, s in zip(besides, own, strict=True)}
     ends = [name for name, s in shifts.items() if within > 0 and abs(s) > 0.999 * within]
-    notes = [f"shift at the end of its range: {', '.join(ends)}; widen it"] if ends else []
+    notes = (
+        [f"shift at the end of its range, within_s = {within:g} s: {', '.join(ends)}; widen it"]
+        if ends
+        else []
+    )
     large = [b.gauge.name for k, b in enumerate(besides) if np.nanmax(misfits["misfit"][k]) > 1]
     if large:
         notes.append(f"the run explains nothing of a component of {', '.join(large)}")

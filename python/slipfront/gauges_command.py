@@ -33,19 +33,52 @@ OPTIONS = (
 )  # fmt: skip
 
 
+#: Those that count in a fit, and in a comparison, alone.
+OF_FITS = (
+    "speed_m_per_s",
+    "direction",
+    "r_min_m",
+    "r_max_m",
+    "no_step",
+    "passages",
+    *MATERIAL,
+    "plane",
+    "base",
+)
+OF_COMPARISONS = ("within_s",)
+
+
+def option(name: str) -> str:
+    return f"--{name.lower().replace('_', '-')}"
+
+
 def interval(text: str) -> tuple[float, float]:
-    first, _, last = text.partition(",")
-    return float(first or "-inf"), float(last or "inf")
+    first, comma, last = text.partition(",")
+    try:
+        made = float(first or "-inf"), float(last or "inf")
+    except ValueError:
+        made = None
+    if made is None or not comma:
+        raise argparse.ArgumentTypeError(f"'{text}' is not FROM,TO in s; give such as 0,20e-6")
+    return made
 
 
 def speed(text: str) -> float | str:
-    return text if text == "gauges" else float(text)
+    try:
+        return text if text == "gauges" else float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is neither a number in m/s nor gauges") from None
 
 
 def shift(text: str) -> tuple[str | None, float]:
     """Of [GAUGE=]S."""
     name, equals, value = text.rpartition("=")
-    return (name if equals else None), float(value)
+    try:
+        return (name if equals else None), float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is not [GAUGE=]S with S in s; give such as 2e-6 or SG3=2e-6"
+        ) from None
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -78,12 +111,21 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--passages", metavar="N", type=int, default=1, help="of fronts at each gauge")
     add = parser.add_argument_group("bodies, of a record; those of a run are its own").add_argument
     for name in MATERIAL:
-        add(f"--{name.lower().replace('_', '-')}", dest=name, type=float)
+        add(option(name), dest=name, type=float)
     add("--plane", choices=("stress", "strain"), help="by default stress")
     add("--base", choices=("equal", "rigid"), help="an equal body, the default, or a rigid plane")
     add = parser.add_argument_group("comparison").add_argument
-    add("--within-s", metavar="S", type=float, default=50e-6, help="largest shift of clocks that is tried")
-    return parser.parse_args(arguments)
+    add("--within-s", metavar="S", type=float, default=50e-6, help="largest shift of clocks that is "
+        "tried, by default 50e-6")  # fmt: skip
+    options = parser.parse_args(arguments)
+    others: tuple[str, ...] = OF_COMPARISONS
+    of = "a comparison: give --compare DIR, or leave it out"
+    if options.compare is not None:
+        others, of = OF_FITS, "a fit: leave it out beside --compare"
+    for name in others:
+        if getattr(options, name) != parser.get_default(name):
+            parser.error(f"{option(name)} is an option of {of}")
+    return options
 
 
 def bodies(options: argparse.Namespace, run: OpenRun | None) -> Any:
@@ -91,12 +133,13 @@ def bodies(options: argparse.Namespace, run: OpenRun | None) -> Any:
         name: getattr(options, name) for name in (*MATERIAL, "plane") if getattr(options, name) is not None
     }
     if run is not None:
-        if given or options.base:
-            raise DataError("a run has its own bodies; leave out the material and --base")
+        more = [option(name) for name in (*given, *(["base"] if options.base else []))]
+        if more:
+            raise DataError(f"a run has its own bodies; leave out {', '.join(more)}")
         return run
-    missing = [f"--{name.lower().replace('_', '-')}" for name in MATERIAL if name not in given]
+    missing = [option(name) for name in MATERIAL if name not in given]
     if missing:
-        raise DataError(f"a record needs its bodies: {', '.join(missing)}")
+        raise DataError(f"a record needs its bodies: give {', '.join(missing)}")
     plain = {name: value for name, value in given.items() if name != "plane"}
     base = {"kind": "rigid"} if options.base == "rigid" else {"kind": "body", **plain}
     return {"material": given, "base": base}
@@ -106,7 +149,10 @@ def prepared(gauges: list[Gauge], options: argparse.Namespace) -> tuple[list[Gau
     names = {gauge.name for gauge in gauges}
     for name, _ in options.shift_s:
         if name is not None and name not in names:
-            raise DataError(f"--shift-s names the gauge '{name}', which the records do not have")
+            has = ", ".join(sorted(names))
+            raise DataError(
+                f"--shift-s names the gauge '{name}', which the records do not have; it is one of {has}"
+            )
     made, notes = [], []
     for gauge in gauges:
         shift_s = sum(s for name, s in options.shift_s if name in (None, gauge.name))
@@ -148,6 +194,8 @@ def with_error(value: float, error: float) -> str:
 
 
 def line_of(fit: TipFit) -> str:
+    if not fit.has_tip:
+        return in_words(f"{fit.gauge}: {'; '.join(fit.doubts)}")
     told = (
         f"{fit.gauge}: front to {'+x' if fit.direction > 0 else '-x'} passes at "
         f"{with_error(1e6 * fit.tip_s, 1e6 * fit.tip_error_s)} us, V = "
@@ -155,7 +203,7 @@ def line_of(fit: TipFit) -> str:
         f"{with_error(fit.Gamma_J_per_m2, fit.Gamma_error_J_per_m2)} J/m2, residual "
         f"{100 * fit.residual_of_all:.0f} %"
     )
-    return "; ".join([told, *fit.doubts])
+    return in_words("; ".join([told, *fit.doubts]))
 
 
 def lines_of_comparison(found: xr.Dataset) -> list[str]:
@@ -166,7 +214,7 @@ def lines_of_comparison(found: xr.Dataset) -> list[str]:
         told = ", ".join(f"{p} {100 * float(at.misfit.sel(component=p)):.0f} %" for p in parts)
         own = ", ".join(f"{p} {100 * float(at.own_misfit.sel(component=p)):.0f} %" for p in parts)
         lines.append(f"{name}: misfit {told}; by its own clock, {1e6 * float(at.own_shift_s):.2f} us, {own}")
-    return [*lines, *found.attrs["notes"]]
+    return [*lines, *(in_words(note) for note in found.attrs["notes"])]
 
 
 def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
@@ -215,9 +263,7 @@ def work(options: argparse.Namespace) -> list[str]:
 
 def in_words(text: str) -> str:
     """Options by their names on the command line."""
-    return re.sub(
-        rf"\b({'|'.join(OPTIONS)})\b", lambda found: f"--{found[0].lower().replace('_', '-')}", text
-    )
+    return re.sub(rf"\b({'|'.join(OPTIONS)})\b", lambda found: option(found[0]), text)
 
 
 def main(arguments: list[str]) -> int:

@@ -54,11 +54,14 @@ def columns_of(
 ) -> dict[str, tuple[str, float]]:
     """The column of each quantity, and the factor to its SI unit. What needs no unit has the unit ""."""
     chosen: dict[str, tuple[str, float]] = {}
+    without_unit: dict[str, str] = {}
     for name in names:
         forms = dict([name_and_unit(name), (name.strip().lower(), "")])
         for quantity, (called, units) in quantities.items():
             unit = next((forms[bare] for bare in forms if bare in called and forms[bare] in units), None)
             if unit is None:
+                if any(bare in called for bare in forms):
+                    without_unit[quantity] = name
                 continue
             if quantity in chosen:
                 raise DataError(
@@ -69,6 +72,13 @@ def columns_of(
     if any(name not in chosen for name in needed):
         has = ", ".join(f"'{one_line(name)}'" for name in names) or "none"
         raise DataError(f"{where}: has the columns {has}; wanted are {wanted}")
+    for quantity, name in without_unit.items():
+        if quantity not in chosen:
+            called, units = quantities[quantity]
+            raise DataError(
+                f"{where}: column '{one_line(name)}' names none of the units {', '.join(units)}: call it "
+                f"{called[0]}_{next(iter(units))} or so"
+            )
     return chosen
 
 

@@ -5,7 +5,7 @@ K is positive where the body above slips to +x."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -14,13 +14,16 @@ from numpy.typing import ArrayLike
 
 from slipfront import _core
 from slipfront.errors import CaseError
-from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth
-from slipfront.given import array, instance, number, shown, whole
+from slipfront.fracture import case_of_bodies
+from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth, some_gauges
+from slipfront.given import array, flag, instance, number, shown, whole
 from slipfront.opened import OpenRun
-from slipfront.running import CaseLike, make_case
+from slipfront.ranges import beyond
+from slipfront.running import CaseLike
 
 LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
 LARGE_ERROR = 0.5  # of Gamma
+LEAST_SIGNAL = 5  # of K, the tip's speed and time given, over its error: below, none has passed
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
 LEAST_TIMES = 8
@@ -32,7 +35,8 @@ REACH = 5.0  # of a fit from the tip, in heights of the gauge
 
 @dataclass(frozen=True)
 class TipFit:
-    """The tip of a front as a gauge saw it pass. Errors are standard ones; NaN of what was given."""
+    """The tip of a front as a gauge saw it pass. Errors are standard ones; NaN of what was given. Where no
+    front passed: numbers NaN, direction 0, and why in doubts."""
 
     gauge: str
     x_m: float
@@ -54,6 +58,19 @@ class TipFit:
     doubts: list[str]  # why the fit is not fit for use; empty where nothing speaks against it
     time_s: np.ndarray = field(repr=False)  # of the fit
     fitted: dict[str, np.ndarray] = field(repr=False)
+
+    @property
+    def has_tip(self) -> bool:
+        return self.direction != 0
+
+
+def no_tip(gauge: Gauge, why: str, doubts: list[str]) -> TipFit:
+    numbers = (np.nan,) * 8
+    return TipFit(
+        gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0,
+        [f"no front passes: {why}", *doubts],
+        np.empty(0), {},
+    )  # fmt: skip
 
 
 class Trial(NamedTuple):
@@ -80,8 +97,8 @@ class Tip:
     ) -> None:
         self.gauge, self.case, self.along_x, self.step, self.r_m = gauge, case, along_x, step, r_m
         self.parts = [part for part in COMPONENTS if part in gauge.values]
-        self.data = np.array([np.asarray(gauge.values[part], float) for part in self.parts])
-        self.time_s = np.asarray(gauge.time_s, float)
+        self.data = np.array([gauge.values[part] for part in self.parts])
+        self.time_s = gauge.time_s
         self.kernel = None
         if gauge.smoothing_s > 0:
             self.step_s = float(self.time_s[1] - self.time_s[0])
@@ -139,13 +156,8 @@ class Tip:
 
 
 def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
-    """The bodies of a run, a case, or a dictionary of its tables material and base, such as
-    {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane. No size counts."""
-    if isinstance(given, OpenRun):
-        given = {name: table for name, table in given.case.items() if name in ("material", "base")}
-    if isinstance(given, Mapping) and isinstance(base := given.get("base"), Mapping):
-        given = {**given, "base": {"height_m": 0.1, **base}} if base.get("kind") == "body" else given
-    case = given if isinstance(given, _core.Case) else make_case(given, None, {})
+    """See case_of_bodies; refused where they differ."""
+    case = case_of_bodies(given)
     one = np.ones(1)
     if np.isnan(_core.TipField(case, 0.0, 1).stress_per_K(one, one)[0][0]):
         raise CaseError("the bodies differ: the field is that of equal bodies or of one on a rigid plane")
@@ -170,12 +182,20 @@ def tip_field(
         raise CaseError(f"direction is {shown(direction)}; it must be 1 or -1")
     tip = _core.TipField(case, V, direction)
     if not tip.limiting_speed_m_per_s > V:
-        raise CaseError(f"speed_m_per_s is {V:g}; the field ends at {tip.limiting_speed_m_per_s:.5g} m/s")
+        raise CaseError(f"speed_m_per_s is {V:g} m/s; the field ends at {tip.limiting_speed_m_per_s:.5g} m/s")
     K = np.sqrt(number(Gamma_J_per_m2, "Gamma_J_per_m2", least=0) / tip.energy_per_K2)
-    x, y = np.broadcast_arrays(np.asarray(x_m, float), np.asarray(y_m, float))
-    found = (tip.stress_per_K if stress else tip.strain_per_K)(
-        array(x.ravel(), "x_m"), array(y.ravel(), "y_m")
-    )
+    shapes = [
+        np.asarray(number(of, name)) if np.ndim(of) == 0 else array(np.ravel(of), name).reshape(np.shape(of))
+        for name, of in (("x_m", x_m), ("y_m", y_m))
+    ]
+    try:
+        x, y = np.broadcast_arrays(*shapes)
+    except ValueError:
+        raise CaseError(
+            f"x_m has the shape {shapes[0].shape}, y_m {shapes[1].shape}: give one of both"
+        ) from None
+    per_K = tip.stress_per_K if flag(stress, "stress") else tip.strain_per_K
+    found = per_K(np.ascontiguousarray(x.ravel()), np.ascontiguousarray(y.ravel()))
     return {part: K * of.reshape(x.shape) for part, of in zip(COMPONENTS, found, strict=True)}
 
 
@@ -233,6 +253,9 @@ def fit_tip(
     tip, by default 5 times the gauge's height.
     Errors follow from the Jacobian and the scatter, with the correlation of neighbouring residuals."""
     instance(gauge, Gauge, "gauge")
+    flag(step, "step")
+    if tip_s is not None:
+        tip_s = number(tip_s, "tip_s", finite=True)
     case = bodies_of(bodies)
     limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
     height = abs(gauge.y_m)
@@ -242,7 +265,8 @@ def fit_tip(
     )
     if not max(r_m[0], height) < r_m[1]:
         raise CaseError(
-            f"gauge {gauge.name}: r_max_m is {r_m[1]:g}; it must be above r_min_m and the gauge's height"
+            f"gauge {gauge.name}: r_max_m is {r_m[1]:g} m; it must be above r_min_m, {r_m[0]:g} m, and the "
+            f"gauge's height, {height:g} m"
         )
     if direction not in (None, 1, -1):
         raise CaseError(f"direction is {shown(direction)}; it must be 1, -1 or None")
@@ -250,7 +274,7 @@ def fit_tip(
     if speed_m_per_s is not None:
         speeds = [number(speed_m_per_s, "speed_m_per_s", above=0)]
         if not speeds[0] < limit:
-            raise CaseError(f"speed_m_per_s is {speeds[0]:g}; the field ends at {limit:.5g} m/s")
+            raise CaseError(f"speed_m_per_s is {speeds[0]:g} m/s; the field ends at {limit:.5g} m/s")
     try:
         with np.errstate(all="ignore"):
             return sought(gauge, case, speeds, speed_m_per_s is not None, direction, tip_s, step, r_m)
@@ -278,8 +302,11 @@ def sought(
         ended.append((tip.trial(v, t), tip, v, t, at))
     order = ranked([end[0] for end in ended])
     if not order:
-        raise CaseError(
-            f"gauge {gauge.name}: nothing changes, or too few times are within {r_m[1]:g} m of a tip"
+        return no_tip(
+            gauge,
+            f"nothing changes, or fewer than {LEAST_TIMES} times are within r_max_m = {r_m[1]:g} m of a tip: "
+            "give a larger one, or check the units of y and time",
+            beyond({"limiting_speed_m_per_s": limit}),
         )
     _, tip, v, t, at = ended[order[0]]
     return result(tip, v, t, at, given, limit)
@@ -313,6 +340,18 @@ def refined(
     return at_s, speed, at
 
 
+def correlated(left: np.ndarray) -> float:
+    """How much residuals that follow one another add to the variance of a mean of them: 1 + 2 times the sum
+    of their autocorrelation up to its first zero, over all components. White noise adds to its first term
+    alone. [components, times]"""
+    n = left.shape[1]
+    power = (np.abs(np.fft.rfft(left, 2 * n, axis=1)) ** 2).sum(axis=0)
+    follow = np.fft.irfft(power)[:n]
+    ends = np.flatnonzero(follow <= 0)
+    last = ends[0] if ends.size else n
+    return max(1.0, float(2 * follow[:last].sum() / max(follow[0], 1e-300) - 1))
+
+
 def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float) -> TipFit:
     gauge, n = tip.gauge, len(tip.parts)
     columns, data = tip.columns(speed, at_s, at), tip.data[:, at].ravel()
@@ -336,9 +375,15 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
         slopes.append(((moved[0] - moved[1]) / (2 * dv))[:, None])
     jacobian = np.hstack(slopes)
     scale = np.linalg.norm(jacobian, axis=0)
-    free = max(data.size - jacobian.shape[1], 1)
-    follow = (left[:, 1:] * left[:, :-1]).sum() / max((left**2).sum(), 1e-300)
-    variance = (left**2).sum() / free * max(1.0, (1 + follow) / max(1 - follow, 1e-3))
+    variance = (left**2).sum() / max(data.size / correlated(left) - jacobian.shape[1], 1)
+    largest = "strain" if gauge.is_strain else "stress_Pa"
+    doubts = beyond({"limiting_speed_m_per_s": limit, largest: float(np.abs(about_mean).max())})
+    of_K = np.linalg.pinv((columns / size).T @ (columns / size))[0, 0] / size[0] ** 2
+    signal = abs(K) / float(np.sqrt(max(variance * of_K, 1e-300)))
+    if signal < LEAST_SIGNAL:
+        return no_tip(
+            gauge, f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed", doubts
+        )
     covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
     errors = np.sqrt(np.diag(covariance))
     i_tip, i_speed = columns.shape[1], columns.shape[1] + 1
@@ -352,13 +397,13 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
         slope[i_speed] = K**2 * (per_K2(speed + dv / 10) - per_K2(speed - dv / 10)) / (dv / 5)
     Gamma, Gamma_error = K**2 * per_K2(speed), float(np.sqrt(slope @ covariance @ slope))
     of_all = float(np.sqrt((left**2).sum() / max((about_mean**2).sum(), 1e-300)))
-    doubts = []
+    doubts += beyond({"Gamma_J_per_m2": Gamma})
     if of_all > LARGE_RESIDUAL:
         doubts.append(f"the residual is {100 * of_all:.0f} % of the record: it is not that of such a tip")
     if not given and not 0.03 * limit < speed < 0.997 * limit:
-        doubts.append("the speed went to the end of its range: give it")
-    if Gamma_error > LARGE_ERROR * Gamma:
-        doubts.append("the record hardly determines Gamma" + ("" if given else ": give the speed"))
+        doubts.append(f"V went to the end of its range, 0 to {limit:.5g} m/s: give speed_m_per_s")
+    if not Gamma_error <= LARGE_ERROR * Gamma:
+        doubts.append("the record hardly determines Gamma" + ("" if given else ": give speed_m_per_s"))
     if K < 0:
         doubts.append("K is negative: the body above slips to -x")
     time_s = tip.time_s[at]
@@ -390,7 +435,7 @@ def fit_tips(
     if isinstance(speed_m_per_s, str) and speed_m_per_s != "gauges":
         raise CaseError(f"speed_m_per_s is {shown(speed_m_per_s)}; it must be a number, None or 'gauges'")
     speed = None if isinstance(speed_m_per_s, str) else speed_m_per_s
-    given = list(gauges)
+    given = some_gauges(gauges)
     options["speed_m_per_s"] = speed
     found = [passing(gauge, case, n, options) for gauge in given]
     if speed_m_per_s == "gauges":
@@ -407,7 +452,7 @@ def passing(gauge: Gauge, case: _core.Case, n: int, options: dict[str, Any]) -> 
     for _ in range(n):
         found.append(fit_tip(rest, case, **options))
         rest = without(rest, case, found[-1])
-    found.sort(key=lambda fit: fit.tip_s)
+    found.sort(key=lambda fit: fit.tip_s if fit.has_tip else np.inf)
     for _ in range(ROUNDS if n > 1 else 0):
         found = refitted(gauge, case, found, options, [options["speed_m_per_s"]] * n)
     return found
@@ -419,19 +464,26 @@ def refitted(
     """Each tip again, about where it was, in the record without the others."""
     found = list(fits)
     for k, speed in enumerate(speeds):
+        if not fits[k].has_tip:
+            continue
         rest = gauge
         for other in found[:k] + found[k + 1 :]:
             rest = without(rest, case, other)
         known = {"speed_m_per_s": speed, "direction": fits[k].direction, "tip_s": fits[k].tip_s}
         fit = fit_tip(rest, case, **{**options, **known})
+        if not fit.has_tip:
+            found[k] = fit
+            continue
         at = np.searchsorted(gauge.time_s, fit.time_s)
-        others = {part: (np.asarray(gauge.values[part]) - rest.values[part])[at] for part in fit.fitted}
+        others = {part: (gauge.values[part] - rest.values[part])[at] for part in fit.fitted}
         found[k] = replace(fit, fitted={part: fit.fitted[part] + others[part] for part in others})
     return found
 
 
 def without(gauge: Gauge, case: _core.Case, fit: TipFit) -> Gauge:
     """The record less the field and the step of a tip."""
+    if not fit.has_tip:
+        return gauge
     per_K, stepped = Tip(gauge, case, fit.direction, True, (0, 1)).shapes(
         fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s))
     )
@@ -439,7 +491,7 @@ def without(gauge: Gauge, case: _core.Case, fit: TipFit) -> Gauge:
         part: fit.K_Pa_sqrt_m * of + fit.step[part] * stepped
         for part, of in zip(fit.step, per_K, strict=True)
     }
-    return replace(gauge, values={part: np.asarray(v) - less[part] for part, v in gauge.values.items()})
+    return replace(gauge, values={part: v - less[part] for part, v in gauge.values.items()})
 
 
 def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
@@ -448,19 +500,22 @@ def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
     made = []
     for k, fit in enumerate(own):
         way = fit.direction
+        if not fit.has_tip:
+            made.append(np.nan)
+            continue
         order = sum(f.direction == way for f in own[:k])
         of_way = [[f for f in fits if f.direction == way] for fits in every]
         same = [fits[order] for fits in of_way if len(fits) > order]
         x, first = np.unique([f.x_m for f in same], return_index=True)
         if len(x) < 2:
             raise CaseError(
-                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give a number"
+                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give speed_m_per_s in m/s"
             )
         tips = np.array([f.tip_s for f in same])[first]
         slowness = np.gradient(tips, x, edge_order=2 if len(x) > 2 else 1)[np.searchsorted(x, fit.x_m)]
         if not slowness * way > 0:
             raise CaseError(
-                f"gauge {fit.gauge}: its neighbours' tips do not follow one another; give a speed"
+                f"gauge {fit.gauge}: its neighbours' tips do not follow one another: give speed_m_per_s, m/s"
             )
         made.append(float(way / slowness))
     return made

@@ -128,4 +128,36 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
   return of;
 }
 
+record::Breakdown breakdown_from_history(const record::History& history, double threshold_m_per_s,
+                                         double cohesion_Pa) {
+  ContactModel model;
+  model.law.parameter(FrictionLaw::cohesion_key) = cohesion_Pa;
+  const std::size_t n = history.x_m.size();
+  Interface state(n);
+  for (std::size_t row = 0; row + 1 < history.time_s.size(); ++row) {
+    const double dt_s = history.time_s[row + 1] - history.time_s[row];
+    const auto slips = [&](std::size_t at) {
+      return std::abs(history.slip_rate_m_per_s[at]) > threshold_m_per_s;
+    };
+    for (std::size_t i = 0; i < n; ++i)
+      state.v_x_m_per_s[i] = (history.slip_m[(row + 1) * n + i] - history.slip_m[row * n + i]) / dt_s;
+    const auto mean_m_per_s = state.v_x_m_per_s;
+    // A trapezoid: half of the interval's slip under the tractions of each end. A breakdown ends at samples:
+    // under the tractions of the last one nodes count as those that stick, but for those that begin to slip.
+    for (const std::size_t end : {row, row + 1}) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t at = end * n + i;
+        const bool begins =
+            (state.breaking[i] | state.broken[i]) == 0 && (slips(row * n + i) || slips((row + 1) * n + i));
+        state.t_Pa[i] = history.t_Pa[at];
+        state.p_Pa[i] = history.p_Pa[at];
+        state.strength_Pa[i] = std::abs(history.t_Pa[at]);
+        state.slipping[i] = end == row ? begins : slips(at);
+      }
+      follow_breakdown(model, 0.5 * dt_s, mean_m_per_s, true, state);
+    }
+  }
+  return breakdown_of(model, state, 0, n);
+}
+
 }  // namespace slipfront::interface

@@ -5,6 +5,7 @@
 
 #include "interface/interface.hpp"
 #include "record/breakdown.hpp"
+#include "record/record.hpp"
 
 namespace slipfront::interface {
 
@@ -18,5 +19,11 @@ void follow_breakdown(const ContactModel& model, double dt_s, std::span<const do
 /// What has been found so far at the nodes [first, end).
 record::Breakdown breakdown_of(const ContactModel& model, const Interface& state, std::size_t first,
                                std::size_t end);
+
+/// The same of the samples of a history, its integrals by trapezoids. A node slips while |slip rate| is above
+/// threshold_m_per_s; slip begins with the sample before.
+/// @pre numbers are finite, matrices of matching sizes
+record::Breakdown breakdown_from_history(const record::History& history, double threshold_m_per_s,
+                                         double cohesion_Pa);
 
 }  // namespace slipfront::interface

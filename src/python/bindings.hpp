@@ -15,6 +15,7 @@ void bind_observers(nb::module_& module);
 void bind_compose(nb::module_& module);
 void bind_fronts(nb::module_& module);
 void bind_fracture(nb::module_& module);
+void bind_passages(nb::module_& module);
 void bind_fits(nb::module_& module);
 void bind_gauges(nb::module_& module);
 void bind_kammer2012(nb::module_& module);

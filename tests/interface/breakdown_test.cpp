@@ -138,5 +138,29 @@ TEST(Breakdown, OpeningEndsIt) {
   EXPECT_EQ(node.found().work_J_per_m2[1], work);
 }
 
+/// A node at a growing slip rate, whose slip more than doubles between the first samples, beside one at rest.
+TEST(Breakdown, OfSamplesFarApart) {
+  record::History history;
+  history.x_m = {0, 1};
+  for (int k = 0; k <= 20; ++k) {
+    const double time_s = k * 1e-7, slip_m = 1e6 * time_s * time_s;
+    history.time_s.push_back(time_s);
+    for (const bool slips : {true, false}) {
+      const double mu = slips ? 0.6 - 0.2 * std::min(slip_m / 2.5e-7, 1.0) : 0.5;
+      history.slip_m.push_back(slips ? slip_m : 0);
+      history.slip_rate_m_per_s.push_back(slips ? 2e6 * time_s : 0);
+      history.t_Pa.push_back(mu * p_Pa + 1e6);
+      history.p_Pa.push_back(p_Pa);
+    }
+  }
+  const auto found = breakdown_from_history(history, 1e-3, 1e6);
+  // Linear in slip: trapezoids are exact.
+  EXPECT_NEAR(found.work_J_per_m2[0], 0.5 * 0.2 * p_Pa * 2.5e-7, 1e-9);
+  EXPECT_NEAR(found.peak_t_Pa[0], 0.6 * p_Pa + 1e6, 1e-3);
+  EXPECT_NEAR(found.residual_coefficient[0], 0.4, 1e-12);
+  EXPECT_EQ(found.complete[0], 1);
+  EXPECT_TRUE(std::isnan(found.work_J_per_m2[1]));
+}
+
 }  // namespace
 }  // namespace slipfront::interface

@@ -10,6 +10,7 @@ import re
 import numpy as np
 import pytest
 import slipfront
+import xarray as xr
 from common import ROOT, refusal, require_done
 from package_cases import program
 
@@ -328,3 +329,162 @@ def test_fronts_arrest_beyond_the_prediction_by_their_cohesive_zone(key, columns
     if key == "friction":
         most_m = 9 * np.pi / 32 * (5.6e9 / 2) * 24e-6 / 1e6
     assert expected_m <= found_m < expected_m + most_m
+
+
+BODIES = {
+    name: {"youngs_modulus_Pa": 5.6e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180.0, **more}
+    for name, more in (("material", {}), ("base", {"kind": "body"}))
+}
+
+
+def of_own_history(run):
+    """Fracture by a run's history alone, and by the run, at the same points outside of the patch."""
+    found = slipfront.fracture_of_history(run.history, run.fronts, run)
+    np.testing.assert_array_equal(found.x_m, run.fracture.x_m)
+    assert set(found.variables) == set(run.fracture.variables)
+    both = (found.breakdown_complete == 1) & (run.fracture.breakdown_complete == 1)
+    both &= np.abs(run.fracture.x_m - 0.15) > 0.03
+    assert int(both.sum()) > 60
+    return found.isel(point=both.to_numpy()), run.fracture.isel(point=both.to_numpy()), found.notes
+
+
+@pytest.mark.parametrize(
+    "interval_s, work_error, time_error", [(0.5e-6, 0.05, 0.2), (0.2e-6, 0.01, 0.1), (0.1e-6, 0.005, 0.08)]
+)
+def test_a_history_gives_what_the_run_has(tmp_path, interval_s, work_error, time_error):
+    """The table of docs/other-codes.md: the peak lies between two samples."""
+    run = slipfront.run(
+        CASE, {"output.history_interval_s": interval_s}, output=tmp_path / "out", progress=False
+    )
+    found, own, notes = of_own_history(run)
+    for name, error in (
+        ("breakdown_work_J_per_m2", work_error),
+        ("weakening_distance_m", 2 * work_error),
+        ("K_Pa_sqrt_m", work_error),
+        ("weakening_time_s", time_error),
+        ("cohesive_zone_m", time_error),
+        ("G_slip_J_per_m2", 0.01),
+    ):
+        ratio = (found[name] / own[name]).dropna("point")
+        assert ratio.sizes["point"] > 60 and abs(float(ratio.median()) - 1) < error, name
+    np.testing.assert_allclose(found.residual_coefficient, own.residual_coefficient, rtol=1e-6)
+    np.testing.assert_allclose(found.stress_drop_Pa, own.stress_drop_Pa, rtol=1e-3)
+    assert [note.endswith("Gamma is rough") for note in notes] == [True] * (interval_s == 0.5e-6)
+
+
+D_C_M, SLIP_RATE, FRONT_SPEED = 2e-6, 1.0, 500.0
+
+
+def made_history(pressure_rise=0.0, interval_s=0.1e-6):
+    """A front to each side at 500 m/s; friction falls from 0.6 to 0.4 over d_c, linear in slip, under a
+    pressure that rises by a share over the same slip."""
+    time_s, x_m = np.arange(0, 40e-6, interval_s), np.linspace(-5e-3, 5e-3, 41)
+    slipping_s = np.round(time_s[:, None] - 5e-6 - np.abs(x_m) / FRONT_SPEED, 12)
+    weakened = np.clip(SLIP_RATE * slipping_s / D_C_M, 0, 1)
+    p_Pa = 5e6 * (1 + pressure_rise * weakened)
+    return {
+        "time_s": time_s,
+        "x_m": x_m,
+        "slip_m": SLIP_RATE * np.maximum(slipping_s, 0),
+        "slip_rate_m_per_s": np.where(slipping_s > 0, SLIP_RATE, 0.0),
+        "t_Pa": np.where(slipping_s >= 0, 0.6 - 0.2 * weakened, 0.45) * p_Pa,
+        "p_Pa": p_Pa,
+    }
+
+
+MADE = slipfront.FrontSettings(l_star_m=1e-3, min_length_m=2e-3)
+
+
+@pytest.mark.parametrize("pressure_rise", [0.0, 0.3])
+def test_a_history_of_known_fracture_energy(pressure_rise):
+    history = made_history(pressure_rise)
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    found = slipfront.fracture_of_history(history, fronts, BODIES)
+    assert sorted(set(found.direction.values)) == [-1, 1] and found.notes == []
+    assert (found.breakdown_complete == 1).all()
+    # int (mu - mu_r) p d slip, mu - mu_r = 0.2 (1 - s), p = p_0 (1 + rise s) over s = slip/d_c. 20 trapezoids
+    # of what is not linear leave 1/20^2 of it.
+    gamma = 0.2 * 5e6 * D_C_M * (0.5 + pressure_rise / 6)
+    np.testing.assert_allclose(found.breakdown_work_J_per_m2, gamma, rtol=2e-3)
+    np.testing.assert_allclose(found.peak_t_Pa, 3e6, rtol=1e-9)
+    np.testing.assert_allclose(found.residual_coefficient, 0.4, rtol=1e-9)
+    np.testing.assert_allclose(found.stress_drop_Pa, 0.45 * 5e6 - found.residual_t_Pa, rtol=1e-9)
+    known = found.v_tip_m_per_s.notnull()
+    zone = (found.v_tip_m_per_s * found.weakening_time_s).where(known, drop=True)
+    np.testing.assert_allclose(found.cohesive_zone_m.where(known, drop=True), zone)
+    assert float(found.K_Pa_sqrt_m.median()) > 0
+
+
+def test_the_page_of_other_codes_runs():
+    """The last code of docs/other-codes.md, which takes a history of any origin."""
+    text = (ROOT / "docs/other-codes.md").read_text(encoding="utf-8")
+    *_, code = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    history = made_history()
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    names = {"slipfront": slipfront, "history": history, "fronts": fronts}
+    exec(code, names)
+    np.testing.assert_allclose(names["fracture"].breakdown_work_J_per_m2, 1.0, rtol=1e-6)
+
+
+def test_slip_to_the_left_has_the_same_energy():
+    history = made_history()
+    for name in ("slip_m", "slip_rate_m_per_s", "t_Pa"):
+        history[name] = -history[name]
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    found = slipfront.fracture_of_history(history, fronts, BODIES)
+    np.testing.assert_allclose(found.breakdown_work_J_per_m2, 1.0, rtol=1e-6)
+
+
+def test_cohesion_is_no_part_of_the_coefficients():
+    history = made_history()
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    with_cohesion = {**history, "t_Pa": history["t_Pa"] + 1e6}
+    found = slipfront.fracture_of_history(with_cohesion, fronts, BODIES, cohesion_Pa=1e6)
+    np.testing.assert_allclose(found.breakdown_work_J_per_m2, 1.0, rtol=1e-6)
+    np.testing.assert_allclose(found.residual_coefficient, 0.4, rtol=1e-9)
+    np.testing.assert_allclose(found.residual_t_Pa, 3e6, rtol=1e-9)
+
+
+def changed(**new):
+    return {**made_history(), **new}
+
+
+@pytest.mark.parametrize(
+    "history, said",
+    [
+        (None, "history has no 'time_s'"),
+        ({k: v for k, v in made_history().items() if k != "slip_m"}, "history has no 'slip_m'"),
+        (changed(slip_m=1e3 * made_history()["slip_m"]), "slip_m grows by .* give m, m/s and s"),
+        (changed(time_s=1e6 * made_history()["time_s"]), "slip_m grows by .* give m, m/s and s"),
+        (changed(t_Pa=np.full_like(made_history()["t_Pa"], np.nan)), r"history\['t_Pa'\] holds a value that"),
+        (changed(p_Pa=made_history()["p_Pa"][:-1]), "must be an array"),
+        (
+            {k: v if k == "x_m" else v[:80] for k, v in made_history().items()},
+            "no front's breakdown came to its end",
+        ),
+        (made_history(interval_s=2e-6), "the breakdown falls between them; give finer ones"),
+    ],
+)
+def test_histories_refused(history, said):
+    fronts = slipfront.find_fronts_in_history(made_history(), settings=MADE)
+    with pytest.raises(slipfront.CaseError, match=said):
+        slipfront.fracture_of_history(history, fronts, BODIES)
+
+
+def test_units_and_fronts_refused():
+    history = made_history()
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    in_MPa = xr.DataArray(history["t_Pa"] / 1e6, attrs={"units": "MPa"})
+    for given, those, bodies, said in (
+        (changed(t_Pa=in_MPa), fronts, BODIES, r"history\['t_Pa'\] is in MPa; give it in Pa"),
+        (history, None, BODIES, "fronts has no 'front_id'"),
+        (history, fronts.assign_coords(x_m=fronts.x_m + 1), BODIES, "no place of the history"),
+        (history, fronts.isel(point=slice(0)), BODIES, "fronts: there are none"),
+        (history, fronts.isel(point=slice(None, None, -1)), BODIES, "do not follow its direction"),
+        (history, fronts, None, "case is None"),
+    ):
+        with pytest.raises(slipfront.CaseError, match=said):
+            slipfront.fracture_of_history(given, those, bodies)
+    pressures = changed(p_Pa=history["p_Pa"] / 1e6)
+    (note,) = slipfront.fracture_of_history(pressures, fronts, BODIES).notes
+    assert note.startswith("residual_coefficient is 4e+05, not from") and "units of t_Pa and p_Pa" in note

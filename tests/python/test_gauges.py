@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -50,15 +51,28 @@ def test_a_tip_without_noise_is_found(case, y_m, direction):
     )
 
 
-def test_errors_are_those_of_the_scatter():
+@pytest.mark.parametrize("noise, low_pass_Hz", [(1e-6, None), (5e-6, None), (2e-5, None), (5e-6, 200e3)])
+def test_errors_are_those_of_the_scatter(noise, low_pass_Hz):
     """Of many records with noise, each estimate is off by its error: the mean square of the quotient is 1."""
-    fits = [slipfront.fit_tip(record(noise=5e-6, seed=k), EQUAL, direction=1, tip_s=TIP_S) for k in range(30)]
+    records = [record(noise=noise, seed=k).prepared(low_pass_Hz=low_pass_Hz) for k in range(30)]
+    fits = [slipfront.fit_tip(gauge, EQUAL, direction=1, tip_s=TIP_S) for gauge in records]
     for name, true in (("Gamma_J_per_m2", GAMMA), ("speed_m_per_s", SPEED), ("tip_s", TIP_S)):
         head, _, unit = name.partition("_")
         errors = np.array([getattr(f, f"{head}_error_{unit}") for f in fits])
         off = (np.array([getattr(f, name) for f in fits]) - true) / errors
         # chi-square of 30 degrees of freedom over 30: from 0.39 to 1.97 with 99.9 %.
         assert 0.39 < np.mean(off**2) < 1.97, name
+
+
+def test_noise_takes_nothing_from_what_residuals_that_follow_one_another_add():
+    """A residual of 100 s^2 that follows itself for 20 times, and white noise of as much."""
+    random = np.random.default_rng(5)
+    smooth = np.convolve(random.standard_normal(40_020), np.ones(20) / 20, "valid")[None, :40_000]
+    smooth *= 10 / smooth.std()
+    noisy = smooth + 10 * random.standard_normal(smooth.shape)
+    # The sum of (1 - k/20) over all lags is 20; of both together 100 * 20 + 100.
+    assert tip_fit.correlated(smooth) == pytest.approx(20, rel=0.1)
+    assert tip_fit.correlated(noisy) * noisy.var() == pytest.approx(2100, rel=0.15)
 
 
 def test_a_given_speed_is_kept():
@@ -113,10 +127,77 @@ def test_what_the_filter_does_to_a_wave():
     assert filtered.values["xx"][middle] == pytest.approx(wave[middle] / np.sqrt(2), abs=1e-3)
 
 
+def noise_alone(name="A", seed=3, smooth=1.0):
+    """Of a gauge that no front passes."""
+    kernel = tip_fit.gaussian(smooth)
+    random = np.random.default_rng(seed)
+    rows = random.standard_normal((3, TIME_S.size + len(kernel) - 1))
+    values = (tip_fit.smooth(1e-5 * row, kernel) for row in rows)
+    return slipfront.Gauge(name, 0.12, 3.5e-3, TIME_S, dict(zip(("xx", "yy", "xy"), values, strict=True)))
+
+
 def test_a_record_of_something_else_is_doubted():
     random = np.random.default_rng(3)
     walk = {part: np.cumsum(random.standard_normal(TIME_S.size)) * 1e-6 for part in ("xx", "yy", "xy")}
     assert slipfront.fit_tip(slipfront.Gauge("A", 0, 3.5e-3, TIME_S, walk), EQUAL).doubts
+
+
+@pytest.mark.parametrize("smooth", [0.0, 4.0])
+@pytest.mark.parametrize("seed", range(5))
+def test_a_gauge_that_no_front_passes(smooth, seed):
+    fit = slipfront.fit_tip(noise_alone(seed=seed, smooth=smooth), EQUAL)
+    assert not fit.has_tip and fit.direction == 0
+    assert np.isnan([fit.Gamma_J_per_m2, fit.speed_m_per_s, fit.tip_s]).all()
+    assert fit.doubts[0].startswith("no front passes: the field of a tip is")
+
+
+def test_one_gauge_without_a_front_leaves_the_others():
+    quiet = dataclasses.replace(record(), name="B", values={"xx": np.zeros(TIME_S.size)})
+    gauges = [record(), noise_alone(), quiet, dataclasses.replace(record(tip_s=TIP_S + 20e-6), x_m=0.118)]
+    fits = slipfront.fit_tips(gauges, EQUAL, speed_m_per_s="gauges")
+    assert [fit.has_tip for fit in fits] == [True, False, False, True]
+    assert fits[0].speed_m_per_s == pytest.approx(900, rel=1e-3)
+    assert "nothing changes" in fits[2].doubts[0] and "r_max_m = 0.0175 m" in fits[2].doubts[0]
+    two = slipfront.fit_tips([record()], EQUAL, passages=2)
+    assert [fit.has_tip for fit in two] == [True, False]
+    assert two[0].Gamma_J_per_m2 == pytest.approx(GAMMA, rel=1e-3)
+
+
+def scaled(strain=1.0, y=1.0, time=1.0):
+    gauge = record(noise=1e-6)
+    values = {part: strain * v for part, v in gauge.values.items()}
+    return dataclasses.replace(gauge, values=values, y_m=y * gauge.y_m, time_s=time * gauge.time_s)
+
+
+def of_material(**factors):
+    material = {name: value * factors.get(name, 1) for name, value in PMMA.items()}
+    return {"material": material, "base": {"kind": "body", **material}}
+
+
+@pytest.mark.parametrize(
+    "gauge, bodies, doubt",
+    [
+        (scaled(), of_material(youngs_modulus_Pa=1e-9), "check the units of modulus and density"),
+        (scaled(), of_material(youngs_modulus_Pa=1e3), "check the units of modulus and density"),
+        (scaled(), of_material(density_kg_per_m3=1e-3), "check the units of modulus and density"),
+        (scaled(strain=1e6), EQUAL, "check the units of strain"),
+        (scaled(strain=1e3), EQUAL, "check the units of strain"),
+        (scaled(strain=1e-6), EQUAL, "check the units of strain"),
+        (scaled(y=1e-3), EQUAL, "check the units of y and time"),
+        (scaled(y=1e3), EQUAL, "no front passes"),
+        (scaled(y=1e6), EQUAL, "check the units of strain or stress, modulus and y"),
+        (scaled(time=1e-6), EQUAL, "check the units of strain or stress, modulus and y"),
+        (scaled(time=1e-3), EQUAL, "no front passes"),
+        (scaled(time=1e6), EQUAL, "check the units of y and time"),
+    ],
+)
+def test_wrong_units_are_doubted(gauge, bodies, doubt):
+    assert doubt in "; ".join(slipfront.fit_tip(gauge, bodies).doubts)
+
+
+def test_a_speed_at_the_end_of_its_range_is_doubted():
+    fit = slipfront.fit_tip(record(speed=1232.5), EQUAL)
+    assert "V went to the end of its range, 0 to 1233" in "; ".join(fit.doubts)
 
 
 def lines(gauge, header, columns):
@@ -154,7 +235,9 @@ def test_forms_of_records(tmp_path):
     [
         ("x_m,y_m,time_s\n0,1,0\n", "has none of strain, stress"),
         ("x_m,y_m,strain_xx\n0,1,0\n", "has the columns 'x_m', 'y_m', 'strain_xx'; wanted are gauge, x, y"),
-        ("x_m,y_m,time_s,stress_xx\n0,1,0,1\n", "has none of strain, stress"),
+        ("x_m,y_m,time_s,stress_xx\n0,1,0,1\n", "column 'stress_xx' names none of the units Pa, kPa, MPa"),
+        ("x,y_m,time_s,strain_xx\n0,1,0,1\n", "wanted are gauge, x, y and time with their units and"),
+        ("x_m,y_m,time_s,strain_xx,stress_yy (psi)\n0,1,0,1,1\n", r"'stress_yy \(psi\)' names none of the"),
         ("x_m,y_m,time_s,strain_xx,stress_yy_Pa\n0,1,0,1,1\n", "several kinds"),
         ("x_m,y_m,time_s,strain_0,strain_90\n0,1,0,1,1\n", "a rosette has three arms, not 2"),
         ("x_m,y_m,time_s,strain_0,strain_180,strain_90\n0,1,0,1,1,1\n", "do not determine the strain"),
@@ -240,8 +323,11 @@ def test_places_between_probes(run):
     computed = slipfront.gauges_of(run)
     with pytest.raises(slipfront.CaseError, match="no probe at gauge A"):
         slipfront.compare_gauges([dataclasses.replace(computed[0], name="A", x_m=0.0975)], run)
-    with pytest.raises(slipfront.CaseError, match="share less than half"):
+    with pytest.raises(slipfront.CaseError, match=r"up to within_s = 5e-05 s; widen it, or move"):
         slipfront.compare_gauges([computed[0].prepared(shift_s=1.0)], run)
+    late = computed[0].prepared(shift_s=-4e-6)
+    (note,) = slipfront.compare_gauges([late], run, within_s=2e-6).notes
+    assert note.startswith("shift at the end of its range, within_s = 2e-06 s: ") and "widen it" in note
 
 
 def refused(capsys, *arguments) -> str:
@@ -273,13 +359,116 @@ def test_the_command(run, fits, tmp_path, capsys):
     assert gauges_command.main([str(records), *OPTIONS, "--low-pass-hz", "3e5", "--zero-s", ",2e-5"]) == 0
     assert "the filter leaves" in capsys.readouterr().out
 
-    assert "a record needs its bodies: --youngs-modulus-pa, " in refused(capsys, records)
-    assert "a run has its own bodies" in refused(capsys, run.folder, *OPTIONS)
+    late = ["--compare", run.folder, "--shift-s=-4e-6", "--within-s", "2e-6"]
+    assert gauges_command.main([str(a) for a in (records, *late)]) == 0
+    assert "end of its range, --within-s = 2e-06 s: " in capsys.readouterr().out
+    assert "up to --within-s = 5e-05 s; widen it, or move the records' clock by --shift-s, in s" in refused(
+        capsys, records, "--compare", run.folder, "--shift-s", "1"
+    )
+    assert "a record needs its bodies: give --youngs-modulus-pa, " in refused(capsys, records)
+    assert "a run has its own bodies; leave out --youngs-modulus-pa, --poissons-ratio" in refused(
+        capsys, run.folder, *OPTIONS
+    )
     assert "names the gauge 'B'" in refused(capsys, records, *OPTIONS, "--shift-s", "B=1")
     assert "--zero-s is 1 to 2 s" in refused(capsys, records, *OPTIONS, "--zero-s", "1,2")
-    assert "--r-max-m is 0.001; it must be above" in refused(capsys, records, *OPTIONS, "--r-max-m", "1e-3")
+    assert "--r-max-m is 0.001 m; it must be above --r-min-m, 0 m, and" in refused(
+        capsys, records, *OPTIONS, "--r-max-m", "1e-3"
+    )
     assert "not replaced" in refused(capsys, run.folder, "-o", records)
     assert "No such file" in refused(capsys, tmp_path / "none.csv", *OPTIONS)
+
+
+@pytest.mark.parametrize(
+    "options, why",
+    [
+        (
+            ["--within-s", "1e-6"],
+            "--within-s is an option of a comparison: give --compare DIR, or leave it out",
+        ),
+        (
+            ["--compare", "out", "--passages", "2"],
+            "--passages is an option of a fit: leave it out beside --compare",
+        ),
+        (["--compare", "out", "--plane", "strain"], "--plane is an option of a fit"),
+        (["--zero-s", "1;2"], "'1;2' is not FROM,TO in s; give such as 0,20e-6"),
+        (["--zero-s", "1"], "'1' is not FROM,TO in s"),
+        (["--shift-s", "A=2us"], r"'A=2us' is not \[GAUGE=\]S with S in s; give such as 2e-6"),
+        (["--speed-m-per-s", "fast"], "'fast' is neither a number in m/s nor gauges"),
+    ],
+)
+def test_options_refused(capsys, options, why):
+    with pytest.raises(SystemExit, match="2"):
+        gauges_command.parse(["records.csv", *options])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(why, line) and any(option in line for option in options if option.startswith("--"))
+
+
+def test_the_command_says_where_no_front_passes(tmp_path, capsys):
+    records, table, picture = (tmp_path / name for name in ("records.csv", "fits.csv", "fits.png"))
+    rows = ["gauge,x_m,y_m,time_s,strain_xx,strain_yy,strain_xy"]
+    for gauge in (record(), noise_alone("quiet")):
+        columns = zip(gauge.time_s, *gauge.values.values(), strict=True)
+        rows += [
+            f"{gauge.name},{gauge.x_m},{gauge.y_m}," + ",".join(map(repr, map(float, c))) for c in columns
+        ]
+    records.write_text("\n".join(rows))
+    said = [str(records), *OPTIONS, "-o", str(table), "--figure", str(picture)]
+    assert gauges_command.main(said) == 0
+    first, second, *_ = capsys.readouterr().out.splitlines()
+    assert first.startswith("SG1: front to +x") and second.startswith("quiet: no front passes: ")
+    found, quiet = csv.DictReader(table.read_text().splitlines()[1:])
+    assert float(found["Gamma_J_per_m2"]) == pytest.approx(GAMMA, rel=1e-3)
+    assert quiet["Gamma_J_per_m2"] == quiet["tip_s"] == "" and quiet["direction"] == "0"
+    records.write_text("\n".join(row for row in rows if not row.startswith("SG1")))
+    assert "no front passes any of the gauges" in refused(capsys, *said)
+
+
+GIVEN = record()
+
+
+@pytest.mark.parametrize(
+    "work, why",
+    [
+        (lambda: slipfront.Gauge(None, 0, 1e-3, TIME_S, {"xx": TIME_S}), "the name of a gauge is None"),
+        (lambda: slipfront.Gauge("A", None, 1e-3, TIME_S, {"xx": TIME_S}), "gauge A: x_m is None"),
+        (lambda: slipfront.Gauge("A", 0, "1", TIME_S, {"xx": TIME_S}), "gauge A: y_m is '1'"),
+        (lambda: slipfront.Gauge("A", 0, 1e-3, None, {"xx": TIME_S}), "gauge A: time_s is None"),
+        (lambda: slipfront.Gauge("A", 0, 1e-3, TIME_S, None), "gauge A: values is None; it must be"),
+        (lambda: slipfront.Gauge("A", 0, 1e-3, TIME_S, {"xx": None}), r"gauge A: values\['xx'\] is None"),
+        (lambda: slipfront.Gauge("A", 0, 1e-3, TIME_S, {"xx": ["a"] * 400}), r"\['xx'\] is not an array"),
+        (lambda: GIVEN.prepared(shift_s=None), "shift_s is None; it must be a number"),
+        (lambda: GIVEN.prepared(zero_s=1e-6), "zero_s is 1e-06; it must be a pair of times in s"),
+        (lambda: GIVEN.prepared(zero_s=(0, None)), "an end of gauge SG1: zero_s is None"),
+        (lambda: GIVEN.prepared(window_s=(0, 1, 2)), "window_s has 3 parts; it must be a pair of times in s"),
+        (lambda: GIVEN.prepared(low_pass_Hz="1"), "low_pass_Hz is '1'; it must be a number"),
+        (lambda: GIVEN.prepared(low_pass_Hz=1.0), "low_pass_Hz is 1 Hz; .* Hz: give one of these"),
+        (lambda: slipfront.read_gauges(None), "file is None; it must be a path"),
+        (lambda: slipfront.gauges_of(None), "run is None; it must be a slipfront.OpenRun"),
+        (lambda: slipfront.fit_tip(None, EQUAL), "gauge is None; it must be a slipfront.Gauge"),
+        (lambda: slipfront.fit_tip(GIVEN, None), "case is None"),
+        (lambda: slipfront.fit_tip(GIVEN, EQUAL, tip_s="now"), "tip_s is 'now'; it must be a number"),
+        (lambda: slipfront.fit_tip(GIVEN, EQUAL, step=None), "step is None; it must be True or False"),
+        (lambda: slipfront.fit_tip(GIVEN, EQUAL, r_max_m="1"), "r_max_m is '1'; it must be a number"),
+        (lambda: slipfront.fit_tip(GIVEN, EQUAL, direction=[1]), r"direction is \[1\]; it must be 1"),
+        (lambda: slipfront.fit_tips(None, EQUAL), "gauges is None; it must be a list of gauges"),
+        (lambda: slipfront.fit_tips(GIVEN, EQUAL), "it must be a list of gauges"),
+        (lambda: slipfront.fit_tips([], EQUAL), "gauges is empty"),
+        (lambda: slipfront.fit_tips([None], EQUAL), r"gauges\[0\] is None; it must be a slipfront.Gauge"),
+        (lambda: slipfront.fit_tips([GIVEN], EQUAL, passages=None), "passages is None"),
+        (lambda: slipfront.fit_tips([GIVEN], EQUAL, speed_m_per_s=[1]), r"speed_m_per_s is \[1\]"),
+        (lambda: slipfront.compare_gauges([GIVEN], None), "run is None; it must be a slipfront.OpenRun"),
+        (lambda: slipfront.tip_field(EQUAL, None, 0, speed_m_per_s=1, Gamma_J_per_m2=1), "x_m is None"),
+        (lambda: slipfront.tip_field(EQUAL, 0, 0, speed_m_per_s=None, Gamma_J_per_m2=1), "per_s is None"),
+        (
+            lambda: slipfront.tip_field(EQUAL, [0, 1], [0, 1, 2], speed_m_per_s=1, Gamma_J_per_m2=1),
+            r"x_m has the shape \(2,\), y_m \(3,\)",
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_no_gauge_is_refused(work, why):
+    with pytest.raises(slipfront.Error, match=why) as error:
+        work()
+    assert "\n" not in str(error.value)
 
 
 def test_the_field_of_a_tip():

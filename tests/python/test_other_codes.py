@@ -366,7 +366,7 @@ def test_tractions_of_either_sign(tmp_path, sign):
 def test_the_page_runs(tmp_path, monkeypatch):
     """The code of docs/other-codes.md; whatever code the history is of, the fronts are those of all."""
     text = (ROOT / "docs/other-codes.md").read_text(encoding="utf-8")
-    *readers, analysis = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    *readers, analysis, _ = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     (tmp_path / "output").mkdir()
     write_sem2dpack(tmp_path)
     write_uguca(tmp_path, below="rigid")

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from slipfront.errors import CaseError
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
 from slipfront.gauges import COMPONENTS, Beside, Gauge
@@ -50,13 +51,16 @@ def rows_of_panels(
 
 def draw_fits(gauges: list[Gauge], fits: list[TipFit]) -> Drawing:
     by_name = {gauge.name: gauge for gauge in gauges}
+    fits = [fit for fit in fits if fit.has_tip]
+    if not fits:
+        raise CaseError("no front passes any of the gauges: there is no fit to draw")
 
     def draw(row: int, k: int, ax: Axes, part: str, factor: float) -> str:
         fit = fits[row]
         gauge = by_name[fit.gauge]
         half_s = AROUND * max(fit.tip_s - fit.time_s[0], fit.time_s[-1] - fit.tip_s)
         near = np.abs(gauge.time_s - fit.tip_s) <= half_s
-        ax.plot(1e6 * gauge.time_s[near], factor * np.asarray(gauge.values[part])[near], color=MEASURED)
+        ax.plot(1e6 * gauge.time_s[near], factor * gauge.values[part][near], color=MEASURED)
         gaps = np.flatnonzero(np.diff(fit.time_s) > 1.5 * np.median(np.diff(fit.time_s))) + 1
         time_s, model = (np.insert(a, gaps, np.nan) for a in (fit.time_s, fit.fitted[part]))
         ax.plot(1e6 * time_s, factor * model, color=MODEL)

@@ -2,6 +2,7 @@
 #include "motion/observers/tip_slips.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/numbers.hpp"
@@ -76,6 +77,27 @@ void TipSlips::restored(Pause& pause) {
           std::ranges::all_of(record_.direction, [](int d) { return d == 1 || d == -1; }) &&
           std::ranges::all_of(record_.time_s, [&](double t) { return t <= pause.now().time_s(); }),
       "slip behind tips");
+}
+
+record::TipSlip tip_slip_from_history(const record::History& history, double threshold_m_per_s) {
+  const std::size_t n = history.x_m.size();
+  statics::Equilibrium before;
+  before.contact.assign(n, statics::Contact::stick);
+  TipSlips observer(before, 0);
+  for (std::size_t row = 0; row < history.time_s.size(); ++row) {
+    SlipUpdate seen;
+    seen.time_s = history.time_s[row];
+    for (std::size_t i = 0; i < n; ++i)
+      if (std::abs(history.slip_rate_m_per_s[row * n + i]) > threshold_m_per_s)
+        seen.changes.push_back({static_cast<std::int32_t>(i), true, seen.time_s});
+    observer.at_update(seen);
+    record::History at_row;
+    at_row.time_s = {seen.time_s};
+    const auto* slip_m = history.slip_m.data() + row * n;
+    at_row.slip_m.assign(slip_m, slip_m + n);
+    observer.take_row(at_row);
+  }
+  return observer.record();
 }
 
 }  // namespace slipfront::motion
