@@ -95,7 +95,9 @@ def test_the_crack_of_the_sample_tells_whether_slip_may_stop(program, write_case
     case = write_case(PRESTRESSED.format(t=2.1e6, half=4e-3))
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):
         printed = program(*command, *sets("plate.top=absorbing")).stdout
-        noted = re.search(r"the first crack, (\S+) m, is shorter than the (\S+) m from which it runs", printed)
+        noted = re.search(
+            r"the first crack, (\S+) m, is shorter than the (\S+) m from which it runs", printed
+        )
         assert 8e-3 <= float(noted[1]) < float(noted[2]) < 0.04
         assert "(Griffith)" not in printed
 
