@@ -14,11 +14,11 @@ import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.given import array, column, number, refusing
-from slipfront.measures import Arrays, history_arrays
+from slipfront.measures import Arrays, field_of, history_arrays
 from slipfront.opened import OpenRun
 from slipfront.ranges import RANGES, beyond
 from slipfront.running import CaseLike, make_case
-from slipfront.units import attributes, unit_of
+from slipfront.units import attributes
 
 #: At places x_m, or one value for all.
 AlongX = float | tuple[ArrayLike, ArrayLike]
@@ -30,6 +30,8 @@ MEASURED = ("breakdown_work_J_per_m2", "residual_coefficient", "breakdown_comple
 FEWEST_SAMPLES, FEW_SAMPLES = 2, 8
 #: Slip over the integral of its rate, from its inverse to this, where both are in SI units.
 SLIP_AGREES = 10
+#: G by slip over breakdown work, from its inverse to this, of fronts that are steady enough.
+G_AGREES = 2
 
 
 def along_x(given: AlongX | None, name: str, *, above: float | None) -> tuple[np.ndarray, np.ndarray]:
@@ -38,8 +40,8 @@ def along_x(given: AlongX | None, name: str, *, above: float | None) -> tuple[np
         return np.zeros(1), np.zeros(0)
     if not isinstance(given, tuple | list):
         return np.zeros(1), np.array([number(given, name, above=above, finite=True)])
-    if len(given) != 2:
-        raise CaseError(f"{name} has {len(given)} parts; give a number, or places and values")
+    if len(given) != 2 or any(np.ndim(part) != 1 for part in given):
+        raise CaseError(f"{name} must be a number, or a pair of arrays: places in m, and values")
     x_m = array(given[0], f"the places of {name}", finite=True)
     values = array(given[1], name, finite=True)
     if len(x_m) != len(values) or len(x_m) == 0 or not (np.diff(x_m) > 0).all():
@@ -94,8 +96,13 @@ def predict_fronts(
     critical_length_m, nucleation_length_m (slow slip over it runs away), arrests (directions), bodies, notes.
     Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
+    more = []
     if isinstance(case, OpenRun):
+        if any(str(name).startswith("friction") for name in (*(changes or {}), *tables)):
+            raise CaseError("friction of an opened run is what it came to: give its case to change friction")
         x_m, work, coefficient = measured_friction(case)
+        more = [f"friction beyond {x_m[0]:.4g} to {x_m[-1]:.4g} m, where no front broke it down, is that at "
+                "these ends"] if energy is None or residual is None else []  # fmt: skip
         energy = (x_m, work) if energy is None else energy
         residual = (x_m, coefficient) if residual is None else residual
         case = case.case
@@ -114,6 +121,7 @@ def predict_fronts(
         for name, values in found.pop("points").items()
     }
     points["direction"] = points["direction"].astype(np.int64)
+    found["notes"] = [*found["notes"], *more]
     return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)
 
 
@@ -147,14 +155,12 @@ def fracture_of_history(
     samples. In the attribute notes: what speaks against the numbers. Raises CaseError, also where the
     breakdown falls between two samples."""
     time_s, x_m, rate, t, p = history_arrays(history)
-    slip = column(history, "history", "slip_m", dims=2)
+    slip = field_of(history, "slip_m")
+    slip = slip - slip[:1]
     fields = {"time_s": time_s, "x_m": x_m, "slip_m": slip, "slip_rate_m_per_s": rate, "t_Pa": t, "p_Pa": p}
     for name, values in fields.items():
         if not np.isfinite(values).all():
             raise CaseError(f"history['{name}'] holds a value that is not finite")
-        unit = getattr(history[name], "attrs", {}).get("units", unit_of(name))
-        if unit != unit_of(name):
-            raise CaseError(f"history['{name}'] is in {unit}; give it in {unit_of(name)}")
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0, finite=True)
     cohesion = number(cohesion_Pa, "cohesion_Pa", least=0, finite=True)
     places = ("front_id", "direction_of_point", "x_m", "onset_s")
@@ -170,8 +176,14 @@ def fracture_of_history(
     require_agreement(time_s, slip, rate)
     done = found["breakdown_complete"] == 1
     if not done.any():
-        raise CaseError("history: no front's breakdown came to its end within it; give a longer one")
-    notes = notes_on(float(np.median(np.diff(time_s))), {name: of[done] for name, of in found.items()})
+        raise CaseError(
+            "history: no front's breakdown came to its end within it: it is too short, friction does not "
+            "fall behind its fronts, or signs are others: t drives the slip, p is positive in compression"
+        )
+    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
+    notes = beyond({"limiting_speed_m_per_s": limit}) + notes_on(
+        float(np.median(np.diff(time_s))), {name: of[done] for name, of in found.items()}
+    )
     columns = {
         "front_id": points["front_id"].astype(np.int64), "x_m": points["x_m"], "onset_s": points["onset_s"],
         "direction": points["direction_of_point"], "v_tip_m_per_s": points["v_tip_m_per_s"], **found,
@@ -222,4 +234,10 @@ def notes_on(interval_s: float, found: Mapping[str, np.ndarray]) -> list[str]:
     if samples < FEWEST_SAMPLES:
         raise CaseError(f"history: {told}: the breakdown falls between them; give finer ones")
     notes = [f"{told}: Gamma is rough"] if samples < FEW_SAMPLES else []
+    by_slip = found["G_slip_J_per_m2"] / found["breakdown_work_J_per_m2"]
+    if np.isfinite(by_slip).any() and not 1 / G_AGREES < np.nanmedian(by_slip) < G_AGREES:
+        notes.append(
+            f"G by slip is {np.nanmedian(by_slip):.2g} times the breakdown work: check units, bodies, that "
+            "slip is that of both sides, and that t and p are no changes"
+        )
     return notes + beyond({name: float(np.median(of)) for name, of in found.items() if name in RANGES})

@@ -21,7 +21,7 @@ from slipfront.errors import CaseError
 from slipfront.given import array, column, in_order, instance, number, refusing, shown, whole
 from slipfront.onsets import NONE, without_marks
 from slipfront.read import FRONT_COLUMNS
-from slipfront.units import attributes
+from slipfront.units import attributes, unit_of
 
 # Arrays by their names, such as a Dataset of OpenRun.
 Arrays = Mapping[Any, Any]
@@ -290,11 +290,25 @@ def find_fronts(
 HistoryArrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
+def field_of(history: Arrays, name: str, *, dims: int = 2, finite: bool = False) -> np.ndarray:
+    """An array of a history, in the unit of its name; [times, nodes], where its dimensions have names in
+    whatever order they are."""
+    values = column(history, "history", name, dims=dims, finite=finite)
+    given = history[name]
+    unit = getattr(given, "attrs", {}).get("units", unit_of(name))
+    if unit != unit_of(name):
+        raise CaseError(f"history['{name}'] is in {unit}; give it in {unit_of(name)}")
+    along = [getattr(history[axis], "dims", ()) for axis in ("time_s", "x_m")]
+    if dims == 2 and getattr(given, "dims", ()) == along[1] + along[0] != along[0] + along[1]:
+        return np.ascontiguousarray(values.T)
+    return values
+
+
 def history_arrays(history: Arrays) -> HistoryArrays:
     """time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa."""
-    time_s, x_m = (column(history, "history", name, finite=True) for name in ("time_s", "x_m"))
-    rate = column(history, "history", "slip_rate_m_per_s", dims=2, finite=True)
-    t, p = (column(history, "history", name, dims=2) for name in ("t_Pa", "p_Pa"))
+    time_s, x_m = (field_of(history, name, dims=1, finite=True) for name in ("time_s", "x_m"))
+    rate = field_of(history, "slip_rate_m_per_s", finite=True)
+    t, p = (field_of(history, name) for name in ("t_Pa", "p_Pa"))
     return time_s, x_m, rate, t, p
 
 

@@ -69,6 +69,10 @@ std::string line_of(const fracture::PredictedFront& front, double c_S) {
   const auto runs =
       fmt::format("front to {}x: from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
                   front.direction > 0 ? '+' : '-', front.points.front().x_m, fastest, fastest / c_S);
+  if (fastest == 0)
+    return fmt::format("front to {}x: does not run: G {:.3g} J/m2, fracture energy {:.3g}\n",
+                       front.direction > 0 ? '+' : '-', last.G_static_J_per_m2,
+                       last.fracture_energy_J_per_m2);
   if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
   if (std::isinf(last.fracture_energy_J_per_m2))
     return runs + fmt::format("arrests at {:.4f} m, where friction does not weaken\n", last.x_m);
@@ -99,9 +103,12 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
   if (!of.starts && !p.covers_all)
     text += std::isnan(of.critical_length_m)
                 ? "no crack from there runs, however long\n"
-                : fmt::format("critical crack {:.4g} m: from this length on it runs\n", of.critical_length_m);
+                : fmt::format("critical crack {:.4g} m: from this length on it runs, as follows\n",
+                              of.critical_length_m);
   if (std::isfinite(p.nucleation_length_m) && !p.covers_all)
-    text += fmt::format("nucleation length {:.3g} m: slow slip over it runs away\n", p.nucleation_length_m);
+    text += fmt::format(
+        "nucleation length {:.3g} m, of this sample where the crack begins: slow slip over it runs away\n",
+        p.nucleation_length_m);
   for (const auto& front : of.fronts) text += line_of(front, c_S);
   for (const auto& note : given.notes()) text += fmt::format("note: {}\n", note);
   for (const auto& note : p.notes) text += fmt::format("note: {}\n", note);
@@ -124,7 +131,8 @@ void add_fracture(CLI::App& app) {
   command
       ->add_option("--fracture-energy", options->fracture_energy_J_per_m2,
                    "J/m2, instead of that of the friction law; laws that do not weaken over a slip have none")
-      ->check(positive());
+      ->check(positive())
+      ->check(finite());
   command
       ->add_option("--residual-coefficient", options->residual_coefficient,
                    "Residual traction over pressure, instead of mu_k")

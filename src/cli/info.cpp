@@ -142,8 +142,10 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
 }
 
 /// In short what `slipfront fracture` tells.
-void add_cracks(const fracture::Prediction& of, Listing& list) {
-  auto text = of.starts ? fmt::format("the first crack, {:.3g} m, runs", of.first_length_m)
+void add_cracks(const run::FracturePrediction& p, Listing& list) {
+  const auto& of = p.of_fronts;
+  auto text = p.covers_all ? "the first crack is the whole interface"
+              : of.starts  ? fmt::format("the first crack, {:.3g} m, runs", of.first_length_m)
               : std::isfinite(of.critical_length_m)
                   ? fmt::format("the first crack, {:.3g} m, does not run; from {:.3g} m on it would",
                                 of.first_length_m, of.critical_length_m)
@@ -248,7 +250,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
                          speed_m_per_s, speed_m_per_s * config.time.end_s));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
-  if (info.rupture.cracks) add_cracks(info.rupture.cracks->of_fronts, list);
+  if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
   for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);
   for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);

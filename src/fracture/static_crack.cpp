@@ -131,6 +131,8 @@ double nucleation_length_m(SlipResponse response, const std::vector<double>& coe
     const auto at = static_cast<Eigen::Index>(k);
     response.t_per_slip(at, at) += weakening_Pa_per_m[k];
   }
+  // A patch of nodes is half an element longer than they are, and unstable between one and the next.
+  constexpr std::size_t fewest_nodes = 3;
   const std::vector<double> zero(n, 0.0);
   const CrackLoads loads{zero, zero, coefficient, zero};
   StaticCrack patch(response, loads);
@@ -138,7 +140,8 @@ double nucleation_length_m(SlipResponse response, const std::vector<double>& coe
   for (std::size_t nodes = 1; nodes < n; ++nodes) {
     const auto there = [&](int side) { return patch.next(side) >= 0 && patch.next(side) < std::ssize(zero); };
     const int side = !there(-1) || (nodes % 2 == 1 && there(1)) ? 1 : -1;
-    if (!(patch.stiffness_Pa_per_m(side) > 0)) return (static_cast<double>(nodes) + 0.5) * h_m;
+    if (!(patch.stiffness_Pa_per_m(side) > 0))
+      return nodes < fewest_nodes ? nan : static_cast<double>(nodes + 1) * h_m;
     patch.release(side);
   }
   return nan;

@@ -79,7 +79,7 @@ class StaticCrack {
 
 /// Length of a patch about a node over which slip that weakens friction linearly goes on without further load
 /// (Uenishi and Rice 2003), to half an element: it grows to both sides, at an end of the contact to the other
-/// alone. Not a number where none does.
+/// alone. Not a number where none does, or it is shorter than four elements.
 /// @param coefficient         friction before it weakens [nodes]
 /// @param weakening_Pa_per_m  fall of the strength over slip [nodes]
 double nucleation_length_m(SlipResponse response, const std::vector<double>& coefficient,

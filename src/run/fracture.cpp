@@ -16,6 +16,7 @@
 #include "interface/nucleation.hpp"
 #include "motion/trigger_zone.hpp"
 #include "run/choices.hpp"
+#include "run/outlook.hpp"
 #include "run/run.hpp"
 #include "statics/condensed_interface.hpp"
 
@@ -137,6 +138,7 @@ std::vector<double> add_friction(const input::Case& config, const Laws& laws, co
 
 /// Adds the trigger's tractions, where they stay.
 void add_trigger(const input::Case& config, const InitialState& initial, std::vector<double>& t_Pa) {
+  if (std::isfinite(config.trigger.duration_s)) return;
   const auto loads = loads_of_event(config, initial);
   for (std::size_t k = 0; k < loads.trigger_force_N_per_m.size(); ++k)
     t_Pa[k] += loads.trigger_force_N_per_m[k] / initial.tributary_m[k];
@@ -178,6 +180,12 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
   }
   if (config.event == interface::EventKind::nucleation) {
     const auto& n = config.nucleation;
+    if (config.plate.sides == mesh::Sides::periodic &&
+        std::abs(n.x_m - 0.5 * config.plate.width_m) + 0.5 * n.length_m() > 0.5 * config.plate.width_m)
+      throw UserError(
+          "{} = {:g} m puts the patch across the seam of a periodic plate, which counts as its ends; "
+          "move it to the middle",
+          Key("nucleation.x_m"), n.x_m);
     return {nearest(n.x_m - 0.5 * n.length_m()), nearest(n.x_m + 0.5 * n.length_m())};
   }
   const double peak_x_m = initial.common.peak_x_m;
@@ -186,7 +194,7 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
 
 /// What the prediction leaves out.
 void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
-               const Laws& laws, const record::StaticState& before, bool by_law, FracturePrediction& p) {
+               const statics::Equilibrium& before, bool by_law, FracturePrediction& p) {
   const auto absorbs = [](const mesh::Plate& plate) {
     return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
   };
@@ -213,14 +221,7 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
   if (given.loading.method == statics::LoadingMethod::ramp)
     p.notes.emplace_back("the state before the event is that of loading.method = direct");
   if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
-  std::size_t n_beyond = 0;
-  for (std::size_t k = 0; k < p.n_nodes; ++k)
-    n_beyond += !laws[k].has_state() &&
-                std::abs(before.t_s_Pa[k]) > interface::static_strength_Pa(laws[k], before.p_s_Pa[k]);
-  if (2 * n_beyond > p.n_nodes)
-    p.notes.push_back(
-        fmt::format("t is beyond the strength at {} of {} nodes: they slip at once, without a front",
-                    n_beyond, p.n_nodes));
+  if (auto doubt = doubt_of_beginning(config, before); !doubt.empty()) p.notes.push_back(std::move(doubt));
 }
 
 }  // namespace
@@ -258,12 +259,13 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
       (patch.first + patch.last) / 2);
   p.of_fronts =
       fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
-  add_notes(given, config, bodies, laws, before, friction.fracture_energy_J_per_m2.empty(), p);
+  add_notes(given, config, bodies, initial.common, friction.fracture_energy_J_per_m2.empty(), p);
   return p;
 }
 
 std::optional<FracturePrediction> quick_prediction(const input::Case& config) {
   if (!input::is_prestressed(config) || is_held(config) || config.event == interface::EventKind::none ||
+      config.plate.sides == mesh::Sides::periodic ||
       !(config.friction.has_state() || interface::weakening_slip_m(config.friction)))
     return {};
   return predict_fronts(config);

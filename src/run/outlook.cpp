@@ -259,6 +259,10 @@ void add_doubts(const input::Case& config, const std::vector<Placed>& placed, Ru
 
 }  // namespace
 
+std::string doubt_of_beginning(const input::Case& config, const statics::Equilibrium& before) {
+  return doubt_of_beginning(config, nodes_inside(config, before));
+}
+
 RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
                                std::span<const double> tributary_m) {
   const auto placed = nodes_inside(config, before);

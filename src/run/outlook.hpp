@@ -43,6 +43,9 @@ inline bool may_pass_c_S(const stability::Bodies& bodies, double S) {
 /// cent.
 inline constexpr double harmless_damping = 0.02;
 
+/// Why the event does not begin in this state, or begins everywhere at once; empty where it begins.
+std::string doubt_of_beginning(const input::Case& config, const statics::Equilibrium& before);
+
 /// Of a case whose state before the event is known.
 /// @param tributary_m  [interface nodes]
 RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,

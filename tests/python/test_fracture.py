@@ -192,7 +192,7 @@ def test_a_long_interface_has_larger_elements_and_says_so(width_m):
     [
         ({"plate.sides": "periodic", "base.sides": "periodic"}, "periodic sides count as ends"),
         ({"prestress.t_rate_Pa_per_s": 1e9}, "count as at the start"),
-        ({"prestress.t_Pa": 3.1e6}, "t is beyond the strength at 601 of 601 nodes"),
+        ({"prestress.t_Pa": 3.1e6}, "t is beyond mu_s p at 601 of 601 nodes inside"),
         ({"plate.top": "free"}, "edges are left out"),
     ],
 )
@@ -400,7 +400,9 @@ def test_a_history_of_known_fracture_energy(pressure_rise):
     history = made_history(pressure_rise)
     fronts = slipfront.find_fronts_in_history(history, settings=MADE)
     found = slipfront.fracture_of_history(history, fronts, BODIES)
-    assert sorted(set(found.direction.values)) == [-1, 1] and found.notes == []
+    assert sorted(set(found.direction.values)) == [-1, 1]
+    # Its slip is that of no elastic body.
+    assert all(note.startswith("G by slip is ") for note in found.notes)
     assert (found.breakdown_complete == 1).all()
     # int (mu - mu_r) p d slip, mu - mu_r = 0.2 (1 - s), p = p_0 (1 + rise s) over s = slip/d_c. 20 trapezoids
     # of what is not linear leave 1/20^2 of it.
@@ -486,5 +488,62 @@ def test_units_and_fronts_refused():
         with pytest.raises(slipfront.CaseError, match=said):
             slipfront.fracture_of_history(given, those, bodies)
     pressures = changed(p_Pa=history["p_Pa"] / 1e6)
-    (note,) = slipfront.fracture_of_history(pressures, fronts, BODIES).notes
+    note = slipfront.fracture_of_history(pressures, fronts, BODIES).notes[-1]
     assert note.startswith("residual_coefficient is 4e+05, not from") and "units of t_Pa and p_Pa" in note
+
+
+def test_a_run_predicts_where_it_knows_friction(run):
+    notes = slipfront.predict_fronts(run).attrs["notes"]
+    assert any(note.startswith("friction beyond ") for note in notes)
+    with pytest.raises(slipfront.Error, match="friction of an opened run is what it came to"):
+        slipfront.predict_fronts(run, {"friction.mu_k": 0.2})
+
+
+@pytest.mark.parametrize("given", [[1, 2], ([0.1], 2), (0.1, [2.0])])
+def test_places_and_values_are_arrays(given):
+    with pytest.raises(slipfront.Error, match="a pair of arrays: places in m, and values"):
+        slipfront.predict_fronts(CASE, fracture_energy_J_per_m2=given)
+
+
+def test_a_trigger_that_does_not_reach_the_strength_is_noted(tmp_path):
+    weak = {"nucleation.form": "overstress", "nucleation.overstress_Pa": 1e4}
+    notes = slipfront.predict_fronts(CASE, weak).attrs["notes"]
+    assert any("brings t to no more than" in note for note in notes)
+
+
+def test_what_a_trigger_takes_away_does_not_count():
+    pushed = {"nucleation.form": "overstress", "nucleation.overstress_Pa": 1.2e6}
+    stays = slipfront.predict_fronts(CASE, pushed)
+    goes = slipfront.predict_fronts(CASE, pushed, event={"trigger_duration_s": 3e-6})
+    assert float(stays.G_static_J_per_m2[0]) > 2 * float(goes.G_static_J_per_m2[0])
+
+
+def test_a_patch_across_a_seam_is_refused():
+    with pytest.raises(slipfront.Error, match="seam of a periodic plate"):
+        slipfront.predict_fronts(
+            CASE, {"plate.sides": "periodic", "base.sides": "periodic", "nucleation.x_m": 0.0}
+        )
+
+
+def test_slip_before_the_event_changes_nothing(run):
+    history = run.history.load()
+    moved = history.assign(slip_m=history.slip_m + 1e-3)
+    before, after = (slipfront.fracture_of_history(h, run.fronts, run) for h in (history, moved))
+    np.testing.assert_allclose(after.G_slip_J_per_m2, before.G_slip_J_per_m2, rtol=1e-6)
+
+
+def test_histories_are_told_by_names_and_units(run):
+    history = run.history.load()
+    fronts = slipfront.find_fronts_in_history(history)
+    xr.testing.assert_equal(slipfront.find_fronts_in_history(history.transpose()), fronts)
+    wrong = history.assign_coords(x_m=history.x_m.assign_attrs(units="mm"))
+    with pytest.raises(slipfront.Error, match=r"history\['x_m'\] is in mm; give it in m"):
+        slipfront.find_fronts_in_history(wrong)
+
+
+def test_bodies_that_do_not_belong_to_a_history_are_noted(run):
+    soft = {"youngs_modulus_Pa": 1.12e9, "poissons_ratio": 0.33, "density_kg_per_m3": 236}
+    found = slipfront.fracture_of_history(
+        run.history, run.fronts, {"material": soft, "base": {"kind": "body", **soft}}
+    )
+    assert any("times the breakdown work: check units, bodies" in note for note in found.notes)
