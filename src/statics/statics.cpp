@@ -429,7 +429,8 @@ void Statics::press_down(double compliance_m_per_Pa) {
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError("the tilt leaves the plate without contact; increase {}", keys_of_tilt(loading_));
   auto u = plate->displacement(pressed_m);
-  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u);
+  held_contact_ = tilted_.contact;
+  held_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u);
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
@@ -469,7 +470,7 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     const auto make_case = [&](int level) {
       return solver_->load_case(TopConstraint::both, tilted_top_, EdgeMotion::along_x, &tilted_u, level);
     };
-    settled = settle_on_levels(mesh_, base_mesh_, *solver_, sticking(tilted_.contact, tilted_u_x_m_, mu_s_),
+    settled = settle_on_levels(mesh_, base_mesh_, *solver_, sticking(held_contact_, held_u_x_m_, mu_s_),
                                make_case, settle_problem, *sheared_);
   }
   const auto& [problem, shear] = settled;
@@ -482,6 +483,12 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
   e.u_per_shear = std::move(per_shear.above);
   e.below_u_per_shear = std::move(per_shear.below);
   return e;
+}
+
+void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
+  held_contact_ = std::move(contact);
+  held_u_x_m_ = std::move(u_x_m);
+  last_.reset();
 }
 
 Equilibrium Statics::shear_by(double shear_m) const {

@@ -99,6 +99,11 @@ class Statics {
   /// The tilted plate before any shear.
   const Equilibrium& tilted() const { return tilted_; }
 
+  /// From here on nodes in contact stick where they have come to rest after slip, not where the tilt has put
+  /// them. The shear of the loaded edge still counts from the tilt.
+  /// @param u_x_m  displacements along x relative to those of a base [interface nodes]
+  void hold(std::vector<Contact> contact, std::vector<double> u_x_m);
+
   /// Equilibrium at the shear at which the largest t/(mu_s p) inside equals `share`.
   /// @throws UserError where no shear does it.
   Equilibrium shear_to(double share) const;
@@ -136,7 +141,9 @@ class Statics {
   TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;
-  std::vector<double> tilted_u_x_m_;  ///< [interface nodes] relative to a base
+  /// What nodes in contact hold before the shear: the tilted plate's, or after slip.
+  std::vector<Contact> held_contact_;
+  std::vector<double> held_u_x_m_;  ///< [interface nodes] relative to a base
   /// Contact states of the last shear, where beginning with them pays.
   mutable std::optional<ContactStates> last_;
 };

@@ -96,6 +96,45 @@ TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
   }
 }
 
+TEST(Statics, ASlippedPlateIsTheOneBeforeUnderLessShear) {
+  // All nodes have slipped as far as the edge has moved on: nothing else has changed.
+  const auto mesh = paper_plate(4e-3);
+  Statics statics(mesh, {}, {}, mu_s);
+  const double slip_m = 1e-5;
+  const auto before = statics.shear_to(0.999);
+  auto u_x_m = lower_x(mesh, statics.tilted());
+  for (double& u : u_x_m) u += slip_m;
+  statics.hold(statics.tilted().contact, u_x_m);
+  const auto after = statics.shear_to(0.999);
+  EXPECT_NEAR(after.shear_m, before.shear_m + slip_m, 1e-12 * before.shear_m);
+  EXPECT_EQ(after.contact, before.contact);
+  const double p_max = *std::ranges::max_element(before.tractions.p_s_Pa);
+  for (std::size_t k = 0; k < u_x_m.size(); ++k) {
+    EXPECT_NEAR(after.tractions.t_s_Pa[k], before.tractions.t_s_Pa[k], 1e-9 * p_max);
+    EXPECT_NEAR(after.tractions.p_s_Pa[k], before.tractions.p_s_Pa[k], 1e-9 * p_max);
+  }
+  expect_complementarity(mesh, after, u_x_m, mu_s);
+}
+
+TEST(Statics, SlipOfPartOfAPlateLowersItsShearAndRaisesThatBeside) {
+  const auto mesh = paper_plate(4e-3);
+  Statics statics(mesh, {}, {}, mu_s);
+  const auto before = statics.shear_to(0.5);
+  auto u_x_m = lower_x(mesh, statics.tilted());
+  const auto slipped = [&](std::size_t k) { return mesh.x_m[mesh.interface_nodes[k]] < 0.1; };
+  for (std::size_t k = 0; k < u_x_m.size(); ++k)
+    if (slipped(k)) u_x_m[k] += 2e-6;
+  statics.hold(statics.tilted().contact, u_x_m);
+  const auto after = statics.shear_by(before.shear_m);
+  expect_equilibrium(mesh, after);
+  expect_complementarity(mesh, after, u_x_m, mu_s);
+  for (std::size_t k = 2; k + 2 < u_x_m.size(); ++k) {
+    if (before.contact[k] != Contact::stick || after.contact[k] != Contact::stick) continue;
+    const double change = after.tractions.t_s_Pa[k] - before.tractions.t_s_Pa[k];
+    EXPECT_EQ(change < 0, slipped(k)) << k;
+  }
+}
+
 TEST_F(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
   expect_slope_of_displacement(statics_, 0.999, 1e-11);
   const auto e = statics_.shear_to(0.999);
