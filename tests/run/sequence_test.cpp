@@ -69,6 +69,8 @@ TEST(Sequence, StaticsHoldTheTractionsWithWhichAnEventComesToRest) {
       p_Pa += at_rest.tractions.p_s_Pa[k] / static_cast<double>(n);
       off = std::max({off, std::abs(at_rest.tractions.t_s_Pa[k] - history.t_Pa[row + k]), std::abs(at_rest.tractions.p_s_Pa[k] - history.p_Pa[row + k])});
     }
+    for (std::size_t k = 0; k < n; ++k)
+      fmt::print("  {:.3f} {} dyn {:.4g} {:.4g} static {:.4g} {:.4g} before {:.4g}\n", history.x_m[k], static_cast<int>(at_rest.contact[k]), history.t_Pa[row + k], history.p_Pa[row + k], at_rest.tractions.t_s_Pa[k], at_rest.tractions.p_s_Pa[k], before.tractions.t_s_Pa[k]);
     fmt::print("{} off {} of {} time {}\n", event, off, p_Pa, result.event.time_s);
   }
 }
