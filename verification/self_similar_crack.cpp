@@ -11,13 +11,12 @@
 
 #include "fracture/passage.hpp"
 #include "fracture/prediction.hpp"
-#include "fronts/front.hpp"
 #include "interface/friction/slip_weakening.hpp"
-#include "motion/event.hpp"
 #include "statics/prestress.hpp"
 #include "verification/body.hpp"
 #include "verification/orders.hpp"
 #include "verification/problems.hpp"
+#include "verification/rupture.hpp"
 
 namespace slipfront::verification::self_similar_crack {
 
@@ -75,12 +74,6 @@ struct Found {
   double work = 0, G_slip = 0;  ///< over the fracture energy there
 };
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 /// @param slope  of the fracture energy, J/m3
 Found run(double slope, double h_m, double v_m_per_s) {
   const mesh::Plate plate{.width_m = width_m,
@@ -108,22 +101,9 @@ Found run(double slope, double h_m, double v_m_per_s) {
   motion::Stepper stepper(motion::BodySource{mesh, pmma}, motion::BodySource{mesh, pmma}, contact, time);
   const auto state = statics::prestressed(mesh, {x_m, t, p}, &mesh);
   stepper.start(state, 0, loads);
-  const motion::EventSetup setup{.state = state,
-                                 .mu_s = mu_s,
-                                 .waves = {solid::longitudinal_speed_m_per_s(pmma), 1e6},
-                                 .loads_settle_s = 0,
-                                 .time = time,
-                                 .sampling = {.history_interval_s = 0.5 * h_m / v_m_per_s,
-                                              .energy_interval_s = 1,
-                                              .snapshot_times_s = {}},
-                                 .halo = 1};
-  const auto event = motion::EventRun(stepper, setup, [](auto, auto) { return true; }).run();
-  fronts::FrontOptions options;
-  options.l_star_m = 5e-3;
-  options.mu_s = mu_s;
-  options.elasticity = {pmma.youngs_modulus_Pa, pmma.poissons_ratio, false};
+  const auto [event, fronts] = run_rupture(stepper, state, time, pmma, mu_s, 0.5 * h_m / v_m_per_s, 1);
   std::vector<double> v, zone, work, G_slip;
-  for (const auto& front : fronts::find_fronts(event.record, {x_m, t, p}, options)) {
+  for (const auto& front : fronts) {
     if (front.direction < 0) continue;
     const auto passages = fracture::passages(front, {x_m, event.breakdown, event.tip_slip}, bodies);
     for (std::size_t k = 0; k < passages.size(); ++k) {

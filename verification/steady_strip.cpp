@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "fracture/passage.hpp"
-#include "fronts/front.hpp"
 #include "interface/friction/slip_weakening.hpp"
-#include "motion/event.hpp"
 #include "statics/prestress.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
+#include "verification/rupture.hpp"
 
 namespace slipfront::verification::steady_strip {
 
@@ -117,12 +116,6 @@ struct Found {
   Curve slip, slip_rate, last_slip_rate;
 };
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 Found run(const Strip& strip) {
   const auto& material = strip.material();
   const double v = strip.v_m_per_s, G = strip.G_J_per_m2();
@@ -163,24 +156,12 @@ Found run(const Strip& strip) {
       is_two ? motion::Stepper(body, body, contact, time) : motion::Stepper(mesh, material, contact, time);
   const auto state = statics::prestressed(mesh, {x_m, t, p}, is_two ? &mesh : nullptr);
   stepper.start(state, 0, loads);
-  const motion::EventSetup setup{.state = state,
-                                 .mu_s = mu_s,
-                                 .waves = {solid::longitudinal_speed_m_per_s(material), 1e6},
-                                 .loads_settle_s = 0,
-                                 .time = time,
-                                 .sampling = {.history_interval_s = 0.05 * height_m / v,
-                                              .energy_interval_s = 0.25 * height_m / v,
-                                              .snapshot_times_s = {}},
-                                 .halo = 1};
-  const auto event = motion::EventRun(stepper, setup, [](auto, auto) { return true; }).run();
+  const auto [event, fronts] =
+      run_rupture(stepper, state, time, material, mu_s, 0.05 * height_m / v, 0.25 * height_m / v);
 
-  fronts::FrontOptions options;
-  options.l_star_m = 5e-3;
-  options.mu_s = mu_s;
-  options.elasticity = {material.youngs_modulus_Pa, material.poissons_ratio, false};
   Found found;
   std::vector<double> zone, work, G_slip, offset_m;
-  for (const auto& front : fronts::find_fronts(event.record, {x_m, t, p}, options)) {
+  for (const auto& front : fronts) {
     if (front.direction != static_cast<int>(strip.direction)) continue;
     const auto passages = fracture::passages(front, {x_m, event.breakdown, event.tip_slip}, strip.bodies);
     for (std::size_t k = 0; k < passages.size(); ++k) {

@@ -96,13 +96,14 @@ def predict_fronts(
     critical_length_m, nucleation_length_m (slow slip over it runs away), arrests (directions), bodies, notes.
     Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
-    more = []
+    notes = []
     if isinstance(case, OpenRun):
         if any(str(name).startswith("friction") for name in (*(changes or {}), *tables)):
             raise CaseError("friction of an opened run is what it came to: give its case to change friction")
         x_m, work, coefficient = measured_friction(case)
-        more = [f"friction beyond {x_m[0]:.4g} to {x_m[-1]:.4g} m, where no front broke it down, is that at "
-                "these ends"] if energy is None or residual is None else []  # fmt: skip
+        if energy is None or residual is None:
+            ends = f"{x_m[0]:.4g} to {x_m[-1]:.4g} m"
+            notes = [f"friction beyond {ends}, where no front broke it down, is that at these ends"]
         energy = (x_m, work) if energy is None else energy
         residual = (x_m, coefficient) if residual is None else residual
         case = case.case
@@ -121,7 +122,7 @@ def predict_fronts(
         for name, values in found.pop("points").items()
     }
     points["direction"] = points["direction"].astype(np.int64)
-    found["notes"] = [*found["notes"], *more]
+    found["notes"] += notes
     return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)
 
 
@@ -155,12 +156,10 @@ def fracture_of_history(
     samples. In the attribute notes: what speaks against the numbers. Raises CaseError, also where the
     breakdown falls between two samples."""
     time_s, x_m, rate, t, p = history_arrays(history)
-    slip = field_of(history, "slip_m")
+    slip = field_of(history, "slip_m", finite=True)
     slip = slip - slip[:1]
-    fields = {"time_s": time_s, "x_m": x_m, "slip_m": slip, "slip_rate_m_per_s": rate, "t_Pa": t, "p_Pa": p}
-    for name, values in fields.items():
-        if not np.isfinite(values).all():
-            raise CaseError(f"history['{name}'] holds a value that is not finite")
+    for name, values in {"t_Pa": t, "p_Pa": p}.items():
+        array(values, f"history['{name}']", dims=2, finite=True)
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0, finite=True)
     cohesion = number(cohesion_Pa, "cohesion_Pa", least=0, finite=True)
     places = ("front_id", "direction_of_point", "x_m", "onset_s")
@@ -230,10 +229,12 @@ def notes_on(interval_s: float, found: Mapping[str, np.ndarray]) -> list[str]:
     """What speaks against the numbers of breakdowns that came to their end."""
     weakens_s = float(np.median(found["weakening_time_s"]))
     samples = weakens_s / interval_s
-    told = f"friction weakens within {weakens_s:.3g} s, samples of the history are {interval_s:.3g} s apart"
+    sampling = (
+        f"friction weakens within {weakens_s:.3g} s, samples of the history are {interval_s:.3g} s apart"
+    )
     if samples < FEWEST_SAMPLES:
-        raise CaseError(f"history: {told}: the breakdown falls between them; give finer ones")
-    notes = [f"{told}: Gamma is rough"] if samples < FEW_SAMPLES else []
+        raise CaseError(f"history: {sampling}: the breakdown falls between them; give finer ones")
+    notes = [f"{sampling}: Gamma is rough"] if samples < FEW_SAMPLES else []
     by_slip = found["G_slip_J_per_m2"] / found["breakdown_work_J_per_m2"]
     if np.isfinite(by_slip).any() and not 1 / G_AGREES < np.nanmedian(by_slip) < G_AGREES:
         notes.append(

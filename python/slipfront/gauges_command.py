@@ -230,6 +230,8 @@ def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
 
 def work(options: argparse.Namespace) -> list[str]:
     run = open_run(options.records) if is_folder(options.records) else None
+    if run is None and options.stress:
+        raise DataError("--stress is of a run; a record holds what its columns say: leave it out")
     read = read_gauges(options.records) if run is None else gauges_of(run, stress=options.stress)
     gauges, notes = prepared(read, options)
     if options.compare is not None:

@@ -22,10 +22,12 @@ RANGES = {
 
 def beyond(values: Mapping[str, float]) -> list[str]:
     """What is said of each value out of its range; NaN passes."""
-    told = []
+    doubts = []
     for name, value in values.items():
         low, high, of = RANGES[name]
         if value < low or value > high:
             unit = "" if unit_of(name) == "1" else f" {unit_of(name)}"
-            told.append(f"{name} is {value:.3g}, not from {low:g} to {high:g}{unit}: check the units of {of}")
-    return told
+            doubts.append(
+                f"{name} is {value:.3g}, not from {low:g} to {high:g}{unit}: check the units of {of}"
+            )
+    return doubts

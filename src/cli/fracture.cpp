@@ -66,13 +66,12 @@ std::string line_of(const fracture::PredictedFront& front, double c_S) {
   const auto& last = front.points.back();
   double fastest = 0;
   for (const auto& point : front.points) fastest = std::max(fastest, point.v_tip_m_per_s);
-  const auto runs =
-      fmt::format("front to {}x: from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
-                  front.direction > 0 ? '+' : '-', front.points.front().x_m, fastest, fastest / c_S);
+  const auto to = fmt::format("front to {}x: ", front.direction > 0 ? '+' : '-');
   if (fastest == 0)
-    return fmt::format("front to {}x: does not run: G {:.3g} J/m2, fracture energy {:.3g}\n",
-                       front.direction > 0 ? '+' : '-', last.G_static_J_per_m2,
-                       last.fracture_energy_J_per_m2);
+    return to + fmt::format("does not run: G {:.3g} J/m2, fracture energy {:.3g}\n", last.G_static_J_per_m2,
+                            last.fracture_energy_J_per_m2);
+  const auto runs = to + fmt::format("from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
+                                     front.points.front().x_m, fastest, fastest / c_S);
   if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
   if (std::isinf(last.fracture_energy_J_per_m2))
     return runs + fmt::format("arrests at {:.4f} m, where friction does not weaken\n", last.x_m);

@@ -30,8 +30,11 @@ class Growth {
  public:
   Growth(const SlipResponse& response, const CrackLoads& loads, const std::vector<double>& fracture_energy,
          std::size_t first, std::size_t last, const SpeedLaw& law)
-      : x_m_(response.x_m), fracture_energy_(fracture_energy), law_(law), crack_(response, loads) {
-    spacing_m_ = (x_m_.back() - x_m_.front()) / static_cast<double>(x_m_.size() - 1);
+      : x_m_(response.x_m),
+        fracture_energy_(fracture_energy),
+        law_(law),
+        crack_(response, loads),
+        spacing_m_(response.spacing_m()) {
     crack_.begin(first);
     while (crack_.next(1) <= static_cast<std::ptrdiff_t>(last)) crack_.release(1);
     for (const int side : {-1, 1}) {
@@ -52,7 +55,7 @@ class Growth {
     p.critical_length_m = length_m();
     while (runs()) step();
     for (auto& tip : tips_) {
-      if (has_next(tip.side()))
+      if (crack_.has_next(tip.side()))
         tip.front.points.push_back(point(tip, nan));
       else
         tip.front.end = PredictedEnd::contact_end;
@@ -62,8 +65,7 @@ class Growth {
   }
 
  private:
-  bool has_next(int side) const { return crack_.next(side) >= 0 && crack_.next(side) < std::ssize(x_m_); }
-  bool has_next() const { return has_next(-1) || has_next(1); }
+  bool has_next() const { return crack_.has_next(-1) || crack_.has_next(1); }
   bool runs() const { return tips_[0].v_m_per_s > 0 || tips_[1].v_m_per_s > 0; }
   double length_m() const { return spacing_m_ * static_cast<double>(crack_.next(1) - crack_.next(-1) - 1); }
   /// At the energy release rates of the crack as it is.
@@ -71,7 +73,7 @@ class Growth {
     for (auto& tip : tips_) {
       tip.share = infinity;
       tip.v_m_per_s = 0;
-      if (!has_next(tip.side())) continue;
+      if (!crack_.has_next(tip.side())) continue;
       const double G = crack_.energy_release_rate_J_per_m2(tip.side());
       tip.share = G > 0 ? fracture_energy_[static_cast<std::size_t>(crack_.next(tip.side()))] / G : infinity;
       tip.v_m_per_s = law_.speed_m_per_s(tip.share);
@@ -90,7 +92,7 @@ class Growth {
   void release_nearer() {
     const double least = std::min(tips_[0].share, tips_[1].share);
     for (const auto& tip : tips_)
-      if (has_next(tip.side()) && !(tip.share > (1 + rounding) * least)) crack_.release(tip.side());
+      if (crack_.has_next(tip.side()) && !(tip.share > (1 + rounding) * least)) crack_.release(tip.side());
     look();
   }
   /// To the time at which the first of the tips is at its next node.
@@ -117,7 +119,7 @@ class Growth {
   const std::vector<double>& fracture_energy_;
   const SpeedLaw& law_;
   StaticCrack crack_;
-  double spacing_m_ = 0, time_s_ = 0;
+  double spacing_m_, time_s_ = 0;
   std::array<Tip, 2> tips_;  ///< to the left, to the right
 };
 

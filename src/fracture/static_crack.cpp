@@ -12,11 +12,11 @@ namespace slipfront::fracture {
 
 SlipResponse response_of_half_spaces(const Bodies& bodies, const std::vector<double>& x_m) {
   const auto n = std::ssize(x_m);
-  const double h = (x_m.back() - x_m.front()) / static_cast<double>(n - 1);
   // Of exp(i k x): t = -Y |k| slip and p = i k N slip, whence the kernels Y/(pi x^2) and N d/dx.
   const double Y = stiffness_Pa(bodies, 0);
   const double N = moving_stiffness_Pa(bodies, 0, 1).imag();
   SlipResponse response{x_m, Eigen::MatrixXd(n, n), Eigen::MatrixXd::Zero(n, n)};
+  const double h = response.spacing_m();
   for (Eigen::Index k = 0; k < n; ++k)
     for (Eigen::Index j = 0; j < n; ++j) {
       const double d = static_cast<double>(k - j);
@@ -126,7 +126,6 @@ void StaticCrack::release(int side) {
 double nucleation_length_m(SlipResponse response, const std::vector<double>& coefficient,
                            const std::vector<double>& weakening_Pa_per_m, std::size_t node) {
   const auto n = response.x_m.size();
-  const double h_m = (response.x_m.back() - response.x_m.front()) / static_cast<double>(n - 1);
   for (std::size_t k = 0; k < n; ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     response.t_per_slip(at, at) += weakening_Pa_per_m[k];
@@ -138,10 +137,9 @@ double nucleation_length_m(SlipResponse response, const std::vector<double>& coe
   StaticCrack patch(response, loads);
   patch.begin(node);
   for (std::size_t nodes = 1; nodes < n; ++nodes) {
-    const auto there = [&](int side) { return patch.next(side) >= 0 && patch.next(side) < std::ssize(zero); };
-    const int side = !there(-1) || (nodes % 2 == 1 && there(1)) ? 1 : -1;
+    const int side = !patch.has_next(-1) || (nodes % 2 == 1 && patch.has_next(1)) ? 1 : -1;
     if (!(patch.stiffness_Pa_per_m(side) > 0))
-      return nodes < fewest_nodes ? nan : static_cast<double>(nodes + 1) * h_m;
+      return nodes < fewest_nodes ? nan : static_cast<double>(nodes + 1) * response.spacing_m();
     patch.release(side);
   }
   return nan;

@@ -15,6 +15,8 @@ namespace slipfront::fracture {
 struct SlipResponse {
   std::vector<double> x_m;  ///< [nodes] ascending
   Eigen::MatrixXd t_per_slip, p_per_slip;
+
+  double spacing_m() const { return (x_m.back() - x_m.front()) / static_cast<double>(x_m.size() - 1); }
 };
 
 /// Of bodies without end: slip of a node is uniform between the middles to its neighbours.
@@ -51,6 +53,7 @@ class StaticCrack {
   double stiffness_Pa_per_m(int side) const { return beside_[side > 0].pivot; }
   /// The node beside the crack; -1 or the number of nodes beyond the ends.
   std::ptrdiff_t next(int side) const { return beside_[side > 0].node; }
+  bool has_next(int side) const { return is_node(next(side)); }
   /// Begins at a node.
   void begin(std::size_t node);
   /// Releases the node beside the crack. @pre there is one

@@ -29,6 +29,11 @@ inline bool has_rate(const Regularisation& r) {
   return r.relaxed == Relaxed::strength || r.relaxed == Relaxed::pressure;
 }
 
+/// Whether the strength follows the pressure, at once or with a delay.
+inline bool follows_pressure(const Regularisation& r) {
+  return r.relaxed != Relaxed::initial_pressure;
+}
+
 /// Relaxation rate at a slip rate, 1/s.
 inline double relaxation_rate_per_s(const Regularisation& r, double speed_m_per_s) {
   return (speed_m_per_s + r.slip_rate_m_per_s) / r.length_m + 1 / r.time_s;

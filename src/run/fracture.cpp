@@ -117,7 +117,7 @@ std::vector<double> add_friction(const input::Case& config, const Laws& laws, co
     if (!(c >= 0 && c <= 100))
       throw UserError("{} is {:g}; it must be from 0 to 100",
                       for_caller("--residual-coefficient", "residual_coefficient"), c);
-  const bool knows_pressure = config.regularisation.relaxed != interface::Relaxed::initial_pressure;
+  const bool follows_pressure = interface::follows_pressure(config.regularisation);
   std::vector<double> energies;
   for (std::size_t k = 0; k < before.x_m.size(); ++k) {
     const auto& law = laws[k];
@@ -130,8 +130,8 @@ std::vector<double> add_friction(const input::Case& config, const Laws& laws, co
                                 ? at(given.x_m, given.residual_coefficient, x_m)
                             : of_state ? of_state->residual_coefficient
                                        : interface::kinetic_coefficient(law);
-    loads.residual_coefficient.push_back(knows_pressure ? residual : 0);
-    loads.cohesion_Pa.push_back(law.cohesion_Pa() + (knows_pressure ? 0 : residual * p_Pa));
+    loads.residual_coefficient.push_back(follows_pressure ? residual : 0);
+    loads.cohesion_Pa.push_back(law.cohesion_Pa() + (follows_pressure ? 0 : residual * p_Pa));
   }
   return energies;
 }
@@ -150,13 +150,13 @@ struct Patch {
 
 /// That of the sample, by the linear fall of friction that has its fracture energy.
 double nucleation_length_m(const Laws& laws, const fracture::SlipResponse& response,
-                           const record::StaticState& before, bool knows_pressure, std::size_t node) {
+                           const record::StaticState& before, bool follows_pressure, std::size_t node) {
   std::vector<double> coefficient, weakening_Pa_per_m;
   for (std::size_t k = 0; k < before.x_m.size(); ++k) {
     const auto slip_m = interface::weakening_slip_m(laws[k]);
     if (!slip_m) return nan;
     const double mu_s = interface::static_coefficient(laws[k]);
-    coefficient.push_back(knows_pressure ? mu_s : 0);
+    coefficient.push_back(follows_pressure ? mu_s : 0);
     weakening_Pa_per_m.push_back((mu_s - interface::kinetic_coefficient(laws[k])) * before.p_s_Pa[k] /
                                  *slip_m);
   }
@@ -205,7 +205,7 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
         "they are taken in");
   if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
     p.notes.emplace_back("absorbing sides count as free ones");
-  if (config.regularisation.relaxed != interface::Relaxed::initial_pressure && !stability::are_alike(bodies))
+  if (interface::follows_pressure(config.regularisation) && !stability::are_alike(bodies))
     p.notes.emplace_back("slip changes the pressure, which speeds leave out");
   if (const double factor = config.plate.element_size_m / given.plate.element_size_m; factor > 1.01)
     p.notes.push_back(
@@ -254,9 +254,9 @@ FracturePrediction predict_fronts(const input::Case& given, const TipFriction& f
   }
   const auto patch = first_crack(config, initial, x_m);
   p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
-  p.nucleation_length_m = nucleation_length_m(
-      laws, response, before, config.regularisation.relaxed != interface::Relaxed::initial_pressure,
-      (patch.first + patch.last) / 2);
+  p.nucleation_length_m =
+      nucleation_length_m(laws, response, before, interface::follows_pressure(config.regularisation),
+                          (patch.first + patch.last) / 2);
   p.of_fronts =
       fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
   add_notes(given, config, bodies, initial.common, friction.fracture_energy_J_per_m2.empty(), p);

@@ -80,7 +80,7 @@ std::int64_t n_beyond_strength(const std::vector<Placed>& nodes) {
 /// Empty, or that growing tractions come to the strength of no node before the end.
 std::string doubt_of_growing_loads(const input::Case& config, const std::vector<Placed>& nodes) {
   const double t_rate = config.prestress.t_rate_Pa_per_s, p_rate = config.prestress.p_rate_Pa_per_s;
-  const bool follows_p = config.regularisation.relaxed != interface::Relaxed::initial_pressure;
+  const bool follows_p = interface::follows_pressure(config.regularisation);
   double first_s = infinity;
   for (const auto& [x_m, node] : nodes) {
     const double strength_rate = follows_p ? node.strength_Pa / node.p_Pa * p_rate : 0;

@@ -240,11 +240,15 @@ std::string end_of_event(const Result& result) {
 }
 
 void measure(Result& result, const InitialState& initial) {
+  measure(result, initial, rupture_outlook(result.config, initial.common, initial.tributary_m));
+}
+
+void measure(Result& result, const InitialState& initial, const RuptureOutlook& outlook) {
   const auto& config = result.config;
   const auto options = front_options(config, initial);
   result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
-  result.rupture = rupture_outlook(config, initial.common, initial.tributary_m);
-  auto rupture = result.rupture;
+  result.rupture = outlook;
+  auto rupture = outlook;
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
   result.warnings = notes_of_case(config, rupture, result.step_s);

@@ -83,6 +83,8 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 /// The case, the steps and an event, without fronts yet. Collective.
 Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
+/// @param outlook  of its initial state
+void measure(Result& result, const InitialState& initial, const RuptureOutlook& outlook);
 void measure(Result& result, const InitialState& initial);
 
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption

@@ -110,6 +110,7 @@ class Session {
   double kept_time_s_ = 0, report_interval_s_ = min_report_interval_s;
 
   InitialState initial_;
+  RuptureOutlook rupture_;                  ///< of it
   motion::TimeStepper* stepper_ = nullptr;  ///< of the ramp or of the event
   motion::RampRun* ramp_ = nullptr;
   std::unique_ptr<motion::TimeStepper> event_stepper_;
@@ -208,6 +209,7 @@ void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
     at_root([&] { stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s())); });
     emplace_event();
   }
+  at_root([&] { rupture_ = rupture_outlook(config_, initial_.common, initial_.tributary_m); });
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
@@ -311,7 +313,7 @@ void Session::write_progress() {
   auto result = unmeasured(config_, *stepper_, std::move(so_far));
   stream_->hand_over();
   result.stepping_wall_s = wall_s();
-  measure(result, initial_);
+  measure(result, initial_, rupture_);
   write_so_far(dir_, result, energies, initial_, {"running", "", head_.sessions});
   reported_ = Clock::now();
   report_interval_s_ = std::max(min_report_interval_s, seconds_since(start) / report_share);
@@ -324,7 +326,7 @@ Finished Session::finish(motion::Event event) {
   event_stepper_.reset();
   run.initial = std::move(initial_);
   at_root([&] {
-    measure(run.result, run.initial);
+    measure(run.result, run.initial, rupture_);
     write_results(run);
   });
   write_fields(folder_, config_, processes_, hooks_.note);

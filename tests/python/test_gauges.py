@@ -370,6 +370,7 @@ def test_the_command(run, fits, tmp_path, capsys):
         capsys, run.folder, *OPTIONS
     )
     assert "names the gauge 'B'" in refused(capsys, records, *OPTIONS, "--shift-s", "B=1")
+    assert "--stress is of a run" in refused(capsys, records, *OPTIONS, "--stress")
     assert "--zero-s is 1 to 2 s" in refused(capsys, records, *OPTIONS, "--zero-s", "1,2")
     assert "--r-max-m is 0.001 m; it must be above --r-min-m, 0 m, and" in refused(
         capsys, records, *OPTIONS, "--r-max-m", "1e-3"
