@@ -18,6 +18,7 @@
 #include "results/folder.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
+#include "run/sequence_session.hpp"
 #include "run/session.hpp"
 
 namespace slipfront::cli {
@@ -183,6 +184,38 @@ run::Finished run_or_go_on(const RunArguments& options, results::ResultFolder& f
       [&] { return run::run_into(folder, given->config(), options.session, hooks); });
 }
 
+void print_event(std::size_t number, const record::SequenceEvent& e) {
+  print(
+      "event {}: at {:.4g} s, x = {:.4f} to {:.4f} m{}, mean slip {:.3g} m, F_S/F_N {:.4f} to {:.4f}, {} "
+      "fronts\n",
+      number, e.begin_s, e.from_x_m, e.to_x_m, e.is_global != 0 ? " (global)" : "", e.mean_slip_m,
+      e.friction_before, e.friction_after, e.n_fronts);
+}
+
+void run_sequence(const RunArguments& options, results::ResultFolder& folder,
+                  const std::optional<input::CaseFile>& given) {
+  if (options.session.shared_states)
+    throw UserError("slipfront: --state-dir is of runs of one event; leave it out of a sequence");
+  const auto hooks = cli::hooks(options.quiet);
+  const run::EventDone done = [&](std::size_t number, const record::SequenceEvent& event) {
+    if (!options.quiet) print_event(number, event);
+  };
+  if (!options.quiet && given)
+    for (const auto& note : given->notes()) print("note: {}\n", note);
+  const auto finished =
+      options.restart
+          ? run::resume_sequence(folder, given ? &given->config() : nullptr, options.session, hooks, done)
+          : given->placing_errors([&] {
+              return run::run_sequence_into(folder, given->config(), options.session, hooks, done);
+            });
+  if (options.quiet) return;
+  const auto strongest =
+      std::ranges::max_element(finished.loading, {}, &record::LoadingRow::shear_over_normal);
+  print("largest F_S/F_N {:.4f}, before event {}\n", strongest->shear_over_normal, strongest->n_events);
+  print("ended after {} events: {}\n", finished.events.size(), finished.end);
+  print("results: {}\n", folder.dir().string());
+}
+
 void run_case(const CaseArguments& arguments, RunArguments& options) {
   std::optional<input::CaseFile> given;
   if (!arguments.file.empty()) given = arguments.read();
@@ -208,6 +241,9 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     given->placing_errors([&] { run::require_divisible(given->config(), processes); });
   catch_interrupts();
   try {
+    const bool is_sequence =
+        input::is_sequence(options.restart ? run::unfinished_case(folder, nullptr) : given->config());
+    if (is_sequence) return run_sequence(options, folder, given);
     const auto [result, initial] = run_or_go_on(options, folder, given);
     run::require_came_to_end(result, folder);
     if (options.quiet) return;

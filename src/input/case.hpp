@@ -108,6 +108,13 @@ struct Probes {
   double interval_s = 0.5e-6;      ///< spacing of the rows
 };
 
+/// Loading that goes on after an event: by static equilibria to the next one, and so on.
+struct Sequence {
+  int max_events = 1;
+  double end_s = infinity;  ///< of the loading, from the tilt on
+  bool to_global_sliding = false;
+};
+
 /// One run, completely. Every member is an entry of the schema (input/schema.hpp).
 struct Case {
   std::string title;
@@ -125,6 +132,7 @@ struct Case {
   interface::EventKind event = interface::EventKind::spontaneous;
   interface::Trigger trigger;
   interface::Nucleation nucleation;
+  Sequence sequence;
   motion::TimeStepping time;
   FrontSettings fronts;
   Output output;
@@ -134,6 +142,11 @@ struct Case {
 /// Whether the tractions of the interface before the event are given: no statics, no ramp.
 inline bool is_prestressed(const Case& config) {
   return config.loading.method == statics::LoadingMethod::prestress;
+}
+
+/// Whether the case is a sequence of events.
+inline bool is_sequence(const Case& config) {
+  return config.sequence.max_events > 1;
 }
 
 /// Whether these grow during the event.

@@ -37,16 +37,31 @@ double c_S_m_per_s(const Case& config) {
   return std::min(of_plate, solid::shear_speed_m_per_s(base_material(config)));
 }
 
-/// Prescribed tractions are all the load there is.
+/// Prescribed tractions are all the load there is. In a sequence the edge hardly moves during an event.
 DefaultRule shear_speed_rule() {
-  return {
-      "loading.shear_speed_over_c_L", "`1e-06`; `0` with loading.method = prestress",
-      [](const Case& c) -> Value { return is_prestressed(c) ? 0.0 : Case{}.loading.shear_speed_over_c_L; }};
+  constexpr double between_events = 1e-9;
+  return {"loading.shear_speed_over_c_L",
+          "`1e-06`; `0` with loading.method = prestress; `1e-09` in a sequence",
+          [](const Case& c) -> Value {
+            if (is_sequence(c)) return between_events;
+            return is_prestressed(c) ? 0.0 : Case{}.loading.shear_speed_over_c_L;
+          }};
 }
 
 DefaultRule element_size_rule(const Scale& width) {
   auto rule = multiple_of(width, "plate.element_size_m");
   rule.text = "width_m / 300";
+  return rule;
+}
+
+/// An event of a sequence has to come to rest.
+DefaultRule end_rule(const Scale& crossing) {
+  constexpr double longer = 10;
+  auto rule = multiple_of(crossing, "time.end_s");
+  rule.text += "; ten times that in a sequence";
+  rule.value = [share = rule.value](const Case& c) -> Value {
+    return (is_sequence(c) ? longer : 1) * std::get<double>(share(c));
+  };
   return rule;
 }
 
@@ -60,12 +75,24 @@ DefaultRule l_star_rule(const Scale& width) {
   return rule;
 }
 
+/// Of shear waves that stand between the interface and the edge that is held.
+double longest_period_s(const Case& config) {
+  constexpr double quarter_waves = 4;
+  double height_m = config.plate.height_m;
+  if (has_base_body(config)) height_m = std::max(height_m, config.base.plate.height_m);
+  return quarter_waves * height_m / c_S_m_per_s(config);
+}
+
 /// Under a law that never sticks slip may speed up for long before a front begins, and where friction rises
-/// with the slip rate it may go on slowly.
+/// with the slip rate it may go on slowly. In a sequence slip could come back as long as waves come back that
+/// have not met the interface in all their phases.
 DefaultRule quiet_time_rule(const Scale& crossing) {
   auto rule = multiple_of(crossing, "time.quiet_s");
-  rule.text += "; `inf` under a friction law with a state or that rises with the slip rate";
+  rule.text +=
+      "; `inf` under a friction law with a state or that rises with the slip rate; in a sequence "
+      "4 height_m / c_S, with the higher body's height";
   rule.value = [share = rule.value](const Case& c) -> Value {
+    if (is_sequence(c)) return longest_period_s(c);
     return c.friction.has_state() || strengthens(c.friction) ? Value(infinity) : share(c);
   };
   return rule;
@@ -101,9 +128,10 @@ std::vector<DefaultRule> make_default_rules() {
        "nucleation.half_length_m", "nucleation.taper_m", "fronts.min_length_m", "fronts.trigger_margin_m"});
   add(height, {"plate.fine_height_m", "plate.relief_depth_m"});
   add(base_height, {"base.fine_height_m"});
-  add(crossing, {"material.stiffness_damping_s", "event.trigger_ramp_s", "time.end_s", "fronts.arrest_time_s",
+  add(crossing, {"material.stiffness_damping_s", "event.trigger_ramp_s", "fronts.arrest_time_s",
                  "output.history_interval_s", "output.energy_interval_s"});
   rules.push_back(l_star_rule(width));
+  rules.push_back(end_rule(crossing));
   rules.push_back(quiet_time_rule(crossing));
   // A base is like the plate unless it is said otherwise: no default makes the two sides differ.
   rules.push_back(same_as("plate.sides", "base.sides"));

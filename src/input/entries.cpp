@@ -293,6 +293,17 @@ Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
           is_overstressed};
 }
+Condition loaded_on() {
+  return {Message("{} = direct, {} = spontaneous and a {} without a state", Key("loading.method"),
+                  Key("event.kind"), Key("friction.law")),
+          [](const Case& c) {
+            return c.loading.method == LoadingMethod::direct && c.event == EventKind::spontaneous &&
+                   !c.friction.has_state();
+          }};
+}
+Condition in_sequence() {
+  return {Message("{} > 1", Key("sequence.max_events")), is_sequence};
+}
 Condition rounded_by(Corner corner, const char* word) {
   return {Message("{} = {}", Key("plate.corner"), word),
           [corner](const Case& c) { return c.plate.corner == corner; }};
@@ -608,6 +619,19 @@ void add_event(Entries& all) {
   nucleation.add("overstress_Pa", &Nucleation::overstress_Pa, any(), "added tangential traction where B = 1");
 }
 
+void add_sequence(Entries& all) {
+  Table sequence(all, "sequence", &Case::sequence, Stage::motion);
+  sequence.only_with = loaded_on();
+  sequence.add("max_events", &Sequence::max_events, between(1, 1e6),
+               "events at most: after each the top edge moves on, through static equilibria, until the next "
+               "begins; 1 for a single event");
+  sequence.only_with = in_sequence();
+  sequence.add("end_s", &Sequence::end_s, above_or_infinite(0),
+               "no event begins after this time, at loading.shear_speed_over_c_L from the tilt on");
+  sequence.add("to_global_sliding", &Sequence::to_global_sliding,
+               "end with the first event in which all nodes in contact slip");
+}
+
 void add_time(Entries& all) {
   Table time(all, "time", &Case::time, Stage::motion);
   time.add("step_factor", &TimeStepping::step_factor, above(0),
@@ -629,7 +653,7 @@ void add_time(Entries& all) {
   time.only_with = {};
   time.add("end_s", &TimeStepping::end_s, above(0), "the event ends, unless it has come to rest before");
   time.add("quiet_s", &TimeStepping::quiet_s, above_or_infinite(0),
-           "the event ends earlier when no node has slipped for this long");
+           "the event ends earlier when no node has slipped for this long; in a sequence it has to");
 }
 
 void add_evaluation(Entries& all) {
@@ -683,6 +707,7 @@ Entries make_common_entries() {
   add_prestress(all);
   add_friction(all);
   add_event(all);
+  add_sequence(all);
   add_time(all);
   add_evaluation(all);
   return all;

@@ -364,6 +364,20 @@ void check_duration(const Case& config) {
 
 }  // namespace
 
+/// What makes the end of an event known, and the places at which its nodes have come to rest.
+void check_sequence(const Case& config) {
+  if (!is_sequence(config)) return;
+  const Key quiet("time.quiet_s"), events("sequence.max_events");
+  const double quiet_s = config.time.quiet_s;
+  if (!(quiet_s < config.time.end_s))
+    throw UserError("{} is {:g} s; with {} > 1 it must be less than {} = {:g} s: each event comes to rest", quiet,
+                    quiet_s, events, Key("time.end_s"), config.time.end_s);
+  if (const double interval_s = config.output.history_interval_s; interval_s > 0.5 * quiet_s)
+    throw UserError(
+        "{} is {:g} s; with {} > 1 it must be at most half of {} = {:g} s, so that a row shows each event at rest",
+        Key("output.history_interval_s"), interval_s, events, quiet, quiet_s);
+}
+
 void check_each_table(const Case& config) {
   check_friction(config);
   check_element_size(config);
@@ -385,6 +399,7 @@ void check_relations(const Case& config, const Document& document) {
   check_state(config);
   check_cohesion(config);
   check_trigger(config);
+  check_sequence(config);
   check_nucleation(config);
   check_fronts(config.fronts, config.plate);
   check_snapshot_times(config.output.snapshot_times_s);

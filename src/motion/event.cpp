@@ -39,13 +39,13 @@ EventRun::EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor&
 
 Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output,
                               Observers more) {
-  const auto& [state, mu_s, waves, loads_settle_s, time, sampling, halo] = setup;
+  const auto& [state, mu_s, waves, loads_settle_s, time, sampling, halo, sticks_within] = setup;
   const double step_s = stepper_.step_s();
   const auto n_steps = steps_of(time, step_s);
   const auto start = stepper_.energies();
   Observers list;
   list.push_back(std::make_unique<Onsets>(state.tractions.x_m, halo));
-  list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, *output));
+  list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, state.tractions.x_m.size(), *output));
   list.push_back(std::make_unique<TipSlips>(state, sampling.history_interval_s));
   if (!stepper_.probes().empty())
     list.push_back(
@@ -53,8 +53,11 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   list.push_back(std::make_unique<EnergyRows>(start, sampling.energy_interval_s, step_s, time.end_s));
   list.push_back(std::make_unique<Snapshots>(sampling.snapshot_times_s, *output));
   list.push_back(std::make_unique<BlowUpMonitor>(stepper_, waves.c_L_m_per_s, time.precision, start));
-  list.push_back(std::make_unique<RestCriterion>(stepper_, slip_rate_scale_m_per_s(state, mu_s, waves),
-                                                 loads_settle_s, time.quiet_s));
+  if (sticks_within)
+    list.push_back(std::make_unique<StickCriterion>(state, *sticks_within, time.quiet_s));
+  else
+    list.push_back(std::make_unique<RestCriterion>(stepper_, slip_rate_scale_m_per_s(state, mu_s, waves),
+                                                   loads_settle_s, time.quiet_s));
   for (auto& observer : more) list.push_back(std::move(observer));
   list.push_back(std::make_unique<Progress>(stepper_, monitor_interval, n_steps, monitor));
   list.push_back(std::make_unique<EndTime>(n_steps));
@@ -79,6 +82,7 @@ Event EventRun::run() {
   event.record = record();
   event.breakdown = stepper_.breakdown();
   event.tip_slip = tip_slip();
+  event.last_row = run_.get<HistoryRows>().last();
   event.energies = run_.get<EnergyRows>().take_rows();
   if (kept_) {
     event.history = std::move(kept_->history);

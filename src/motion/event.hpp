@@ -14,6 +14,7 @@
 #include "motion/observers/onsets.hpp"
 #include "motion/observers/progress.hpp"
 #include "motion/observers/rest_criterion.hpp"
+#include "motion/observers/stick_criterion.hpp"
 #include "motion/observers/tip_slips.hpp"
 #include "record/breakdown.hpp"
 #include "record/record.hpp"
@@ -42,6 +43,7 @@ struct Event {
   record::SlipRecord record;
   record::Breakdown breakdown;
   record::TipSlip tip_slip;
+  record::History last_row;                ///< of the history, without places and states of the law
   record::History history;                 ///< without an output
   std::vector<Snapshot> snapshots;         ///< without an output
   record::ProbeRecord probes;              ///< without an output
@@ -63,6 +65,8 @@ struct EventSetup {
   TimeStepping time;
   Sampling sampling;
   int halo = 0;  ///< nodes on each side whose tractions are kept at an onset
+  /// The event ends when nodes between these places stick, see StickCriterion; none: see RestCriterion.
+  std::optional<Stretch> sticks_within = {};
 };
 
 /// An event under way: steps a started stepper, with the observers of an event, until the end time, or until

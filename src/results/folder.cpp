@@ -33,9 +33,9 @@ constexpr const char* state_name = "state";
 constexpr const char* kind_name = "kind";
 
 /// Names that a run's results have.
-constexpr std::array<const char*, 8> names_of_run = {"case.resolved.toml", "run.json",     "interface.h5",
-                                                     "fronts.csv",         "fracture.csv", "static.csv",
-                                                     "energy.csv",         "fields.vtkhdf"};
+constexpr std::array names_of_run = {"case.resolved.toml", "run.json",      "interface.h5", "fronts.csv",
+                                     "fracture.csv",       "static.csv",    "energy.csv",   "fields.vtkhdf",
+                                     "sequence.json",      "events.csv",    "loading.csv"};
 
 std::string overwrite_option() {
   return for_caller("--overwrite", "overwrite=True");
@@ -139,7 +139,8 @@ std::set<std::string> earlier_set(const fs::path& dir) {
     names = set_of(dir);
   } catch (const UserError&) {
   }
-  if (names.empty() && files::is_file(dir / "run.json") && files::is_file(dir / "case.resolved.toml"))
+  const bool has_run = files::is_file(dir / "run.json") || files::is_file(dir / "sequence.json");
+  if (names.empty() && has_run && files::is_file(dir / "case.resolved.toml"))
     names.insert(names_of_run.begin(), names_of_run.end());
   return names;
 }
@@ -221,10 +222,10 @@ bool is_own_publication(const fs::path& publishing) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(const fs::path& dir, std::string work)
+ResultFolder::ResultFolder(const fs::path& dir, std::string work, const ResultFolder* within)
     : dir_(files::resolved(dir)), work_(std::move(work)) {
   try {
-    make();
+    make(within);
     lock();
     if (files::is_there(unfinished()) && !is_own_work(unfinished())) throw_foreign(unfinished(), "folder");
     finish_publication();
@@ -245,13 +246,14 @@ void ResultFolder::give_back() {
     if (!files::try_to_remove(p, true) || p == outermost_made_) return;
 }
 
-void ResultFolder::make() {
+void ResultFolder::make(const ResultFolder* within) {
   std::error_code error;
   if (dir_.relative_path().empty())
     throw UserError("output folder \"{}\": is {}; name a folder for these results", dir_.string(),
                     dir_.empty() ? "no name" : "the root of all folders");
   // Its own end would take what another process keeps in it.
   for (fs::path p = fs::absolute(dir_, error); p.has_relative_path(); p = p.parent_path()) {
+    if (within != nullptr && p == within->unfinished()) break;
     const auto name = p.filename();
     if ((name == unfinished().filename() || name == publishing().filename()) && has_own_state(p))
       throw UserError(

@@ -20,8 +20,9 @@ class ResultFolder {
  public:
   /// Makes the folder where it is missing, locks it, and ends a publication that was cut off.
   /// @param work  what is to be done in it, "run" or the like: unfinished work of another kind is not resumed
+  /// @param within  of whose unfinished work it is a part, or null
   /// @throws UserError where it cannot be used, or another process holds it.
-  ResultFolder(const std::filesystem::path& dir, std::string work);
+  ResultFolder(const std::filesystem::path& dir, std::string work, const ResultFolder* within = nullptr);
   /// Gives the folder back; those that were made for it go again if nothing has come into them.
   ~ResultFolder();
   ResultFolder(const ResultFolder&) = delete;
@@ -56,7 +57,7 @@ class ResultFolder {
 
  private:
   std::filesystem::path publishing() const { return dir_ / "publishing"; }
-  void make();
+  void make(const ResultFolder* within);
   void lock();
   void give_back();
   void finish_publication();

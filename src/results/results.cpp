@@ -53,6 +53,34 @@ void write_energies(const std::filesystem::path& file, std::span<const record::E
   });
 }
 
+void write_loading(const std::filesystem::path& file, std::span<const record::LoadingRow> rows) {
+  std::string text = "event,phase";
+  for (const auto& column : record::loading_fields) text += fmt::format(",{}", column.name);
+  for (const auto& term : record::energy_terms) text += fmt::format(",{}", term.name);
+  text += fmt::format(",{},{}\n", record::wave_loss.name, record::imbalance_name);
+  for (const auto& row : rows) {
+    text += fmt::format("{},{}", row.n_events, record::name(row.phase));
+    for (const auto& column : record::loading_fields) text += fmt::format(",{}", field(row.*column.member));
+    for (const auto& term : record::energy_terms) text += fmt::format(",{}", field(row.energies.*term.member));
+    text += fmt::format(",{},{}\n", field(row.wave_loss_J_per_m),
+                        field(record::imbalance_J_per_m(row, rows.front())));
+  }
+  files::write_text(file, text);
+}
+
+void write_events(const std::filesystem::path& file, std::span<const record::SequenceEvent> events) {
+  std::string text = "event";
+  for (const auto& column : record::sequence_event_fields) text += fmt::format(",{}", column.name);
+  text += "\n";
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    text += fmt::format("{}", k + 1);
+    for (const auto& column : record::sequence_event_fields)
+      text += fmt::format(",{}", field(events[k].*column.member));
+    text += "\n";
+  }
+  files::write_text(file, text);
+}
+
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts) {
   std::string text =
       "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"

@@ -11,6 +11,7 @@
 #include "record/breakdown.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
+#include "record/sequence.hpp"
 
 namespace slipfront::results {
 
@@ -37,5 +38,11 @@ void write_fracture(const std::filesystem::path& file, std::span<const fronts::F
 /// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per
 /// instant; the first is the start.
 void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies);
+
+/// loading.csv: event (the number of those that have begun), phase (record::LoadingPhase),
+/// record::loading_fields, the terms of record::Energies, record::wave_loss, imbalance_J_per_m.
+void write_loading(const std::filesystem::path& file, std::span<const record::LoadingRow> rows);
+/// events.csv: event (its number, from 1), record::sequence_event_fields; what is undefined is left empty.
+void write_events(const std::filesystem::path& file, std::span<const record::SequenceEvent> events);
 
 }  // namespace slipfront::results

@@ -216,10 +216,7 @@ std::unique_ptr<motion::TimeStepper> new_time_stepper(const input::Case& config,
                                                 config.time);
 }
 
-InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
-                                const motion::Execution& execution, const RampBegins& ramp_begins,
-                                const Processes& processes) {
-  const auto start = Clock::now();
+InitialState unloaded_state(const input::Case& config, const Processes& processes) {
   InitialState initial;
   auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
@@ -228,6 +225,44 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_cells = n_cells_of(initial.mesh) + (initial.base ? n_cells_of(*initial.base) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   initial.mu_s = std::move(meshes.mu_s);
+  return initial;
+}
+
+namespace {
+
+statics::Statics statics_of(const input::Case& config, const mesh::Mesh& plate,
+                            const std::optional<mesh::Mesh>& base_mesh, const PerNode& mu_s,
+                            statics::Statics::MayContinue may_continue) {
+  const auto base_material = input::base_material(config);
+  std::optional<statics::ElasticBody> base;
+  if (base_mesh) base.emplace(statics::ElasticBody{*base_mesh, base_material});
+  return {{plate, config.material},
+          base,
+          config.loading,
+          at_all_nodes(mu_s, plate),
+          interface::static_coefficient_key(config.friction),
+          std::move(may_continue)};
+}
+
+}  // namespace
+
+statics::Statics statics_of(const input::Case& config, const InitialState& initial,
+                            statics::Statics::MayContinue may_continue) {
+  return statics_of(config, initial.mesh, initial.base, ratios_at_rest(config, initial.mu_s),
+                    std::move(may_continue));
+}
+
+void describe_solver(const input::Case& config, const statics::Statics& statics, InitialState& initial) {
+  initial.n_unknowns = statics.solver().n_unknowns();
+  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
+  initial.solver_bytes = statics.solver().bytes();
+}
+
+InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
+                                const motion::Execution& execution, const RampBegins& ramp_begins,
+                                const Processes& processes) {
+  const auto start = Clock::now();
+  auto initial = unloaded_state(config, processes);
   const auto mu_s = ratios_at_rest(config, initial.mu_s);
   if (is_prestressed(config)) {
     initial.prescribed = true;
@@ -238,15 +273,8 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.wall_s = seconds_since(start);
     return initial;
   }
-  const auto base_material = input::base_material(config);
-  std::optional<statics::ElasticBody> base;
-  if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
-  const statics::Statics statics(
-      {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
-      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); });
-  initial.n_unknowns = statics.solver().n_unknowns();
-  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
-  initial.solver_bytes = statics.solver().bytes();
+  const auto statics = statics_of(config, initial, [&] { return monitor(0, 0); });
+  describe_solver(config, statics, initial);
   const auto critical = statics.shear_to(1);
   initial.critical_shear_m = critical.shear_m;
   if (config.loading.method == statics::LoadingMethod::direct) {
@@ -279,13 +307,8 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
 
 std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes) {
   if (!has_forces(config)) return {};
-  const auto base_material = input::base_material(config);
-  std::optional<statics::ElasticBody> base;
-  if (meshes.base) base.emplace(statics::ElasticBody{*meshes.base, base_material});
-  const auto mu_s = ratios_at_rest(config, meshes.mu_s);
-  const statics::Statics statics({meshes.plate, config.material}, base, config.loading,
-                                 at_all_nodes(mu_s, meshes.plate),
-                                 interface::static_coefficient_key(config.friction));
+  const auto statics = statics_of(config, meshes.plate, meshes.base, ratios_at_rest(config, meshes.mu_s),
+                                  [] { return true; });
   const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
   const auto critical = statics.shear_to(1);
   auto common = common_state(config, statics, critical, tributary_m);

@@ -69,6 +69,15 @@ Meshes check_interfaces(const input::Case& config);
 std::int64_t n_nodes_of(const mesh::Mesh& mesh);
 std::int64_t n_cells_of(const mesh::Mesh& mesh);
 
+/// The bodies of a case without any load, after check.
+InitialState unloaded_state(const input::Case& config, const Processes& processes = one_process());
+/// Statics of a state's bodies, which have to stay where they are.
+/// @throws as statics::Statics
+statics::Statics statics_of(const input::Case& config, const InitialState& initial,
+                            statics::Statics::MayContinue may_continue);
+/// Notes in a state by which solver it is found.
+void describe_solver(const input::Case& config, const statics::Statics& statics, InitialState& initial);
+
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 

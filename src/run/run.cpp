@@ -174,8 +174,11 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, Ini
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
                              motion::EventOutput* output, motion::Observers more) {
+  const auto& state = event_state(config, initial);
+  std::optional<motion::Stretch> sticks_within;
+  if (input::is_sequence(config)) sticks_within = {state.inside_from_m, state.inside_to_m};
   const motion::EventSetup setup = {
-      .state = event_state(config, initial),
+      .state = state,
       .mu_s = ratios_at_rest(config, initial.mu_s),
       .waves = {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
       .loads_settle_s = loads_settle_s(config),
@@ -183,7 +186,8 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
       .sampling = {config.output.history_interval_s, config.output.energy_interval_s,
                    snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s,
                    prescribed_stress(config)},
-      .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m)};
+      .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m),
+      .sticks_within = sticks_within};
   return {stepper, setup, monitor, output, std::move(more)};
 }
 
@@ -233,6 +237,9 @@ std::string end_of_event(const Result& result) {
     case motion::EventEnd::quiet:
       break;
   }
+  if (input::is_sequence(config))
+    return fmt::format("at t = {:.4g} s all nodes inside had stuck for time.quiet_s = {:g} s", result.event.time_s,
+                       config.time.quiet_s);
   return fmt::format(
       "at t = {:.4g} s nothing had moved for time.quiet_s = {:g} s: no slip began, none grew or was faster "
       "than {:.3g} m/s, and no waves were left",

@@ -12,6 +12,7 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "record/sequence.hpp"
 #include "results/contents.hpp"
 #include "run/initial_state.hpp"
 #include "run/mesh_choice.hpp"
@@ -115,6 +116,8 @@ struct Status {
 Status status_of(const Result& result);
 
 inline constexpr const char* case_file = "case.resolved.toml";
+/// Of a sequence what run.json is of a run.
+inline constexpr const char* sequence_file = "sequence.json";
 /// The tables of prescribed tractions and of friction as they were read, where there are any.
 inline constexpr const char* prestress_file = "prestress.csv";
 inline constexpr const char* friction_file = "friction.csv";
@@ -141,6 +144,12 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   const Status& status);
 /// run.json of a run without an event yet, or that has come to none.
 void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status);
+
+/// sequence.json, events.csv and loading.csv of a sequence so far.
+/// @param end  why it ended, in words; empty before
+void write_sequence(const std::filesystem::path& dir, const input::Case& config,
+                    std::span<const record::SequenceEvent> events, std::span<const record::LoadingRow> loading,
+                    const std::string& end, const Status& status);
 
 /// Derived quantities of a case, found without solving anything but the statics of loads given as forces.
 struct Info {

@@ -3,70 +3,251 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
-#include "run/begin.hpp"
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "fronts/fit.hpp"
 #include "run/choices.hpp"
 
 namespace slipfront::run {
 
 namespace {
 
-statics::Statics statics_of(const input::Case& config, const InitialState& initial,
-                            const motion::Monitor& monitor) {
-  std::optional<statics::ElasticBody> base;
-  if (initial.base) base.emplace(statics::ElasticBody{*initial.base, input::base_material(config)});
-  const auto of = ratios_at_rest(config, initial.mu_s);
-  std::vector<double> mu_s;
-  for (std::size_t k = 0; k < initial.tributary_m.size(); ++k) mu_s.push_back(of[k]);
-  return {{initial.mesh, config.material}, base, config.loading, std::move(mu_s),
-          interface::static_coefficient_key(config.friction), [monitor] { return monitor(0, 0); }};
+using record::LoadingPhase;
+using record::LoadingRow;
+
+/// Displacements of the plate at the interface relative to those of a base. [interface nodes]
+struct Relative {
+  std::vector<double> x_m, y_m;
+};
+Relative relative(const InitialState& initial, const statics::Equilibrium& state) {
+  Relative u;
+  for (std::size_t k = 0; k < initial.mesh.interface_nodes.size(); ++k) {
+    const auto n = initial.mesh.interface_nodes[k];
+    u.x_m.push_back(state.u_m.x[n]);
+    u.y_m.push_back(state.u_m.y[n]);
+    if (!initial.base) continue;
+    const auto below = initial.base->interface_nodes[k];  // described upside down
+    u.x_m.back() -= state.below_u_m.x[below];
+    u.y_m.back() += state.below_u_m.y[below];
+  }
+  return u;
+}
+
+/// Adds the works between two equilibria to those of `sum`: by the mean of the forces at both, which is what
+/// the strain energy changes by.
+void add_works(const InitialState& initial, const statics::Equilibrium& from, const statics::Equilibrium& to,
+               record::Energies& sum) {
+  const auto u_from = relative(initial, from), u_to = relative(initial, to);
+  double force_N_per_m = 0;
+  for (std::size_t k = 0; k < initial.tributary_m.size(); ++k) {
+    const double half_m = 0.5 * initial.tributary_m[k];
+    const double t = half_m * (from.tractions.t_s_Pa[k] + to.tractions.t_s_Pa[k]);
+    const double p = half_m * (from.tractions.p_s_Pa[k] + to.tractions.p_s_Pa[k]);
+    force_N_per_m += t;
+    sum.friction_work -= t * (u_to.x_m[k] - u_from.x_m[k]);
+    sum.contact_work += p * (u_to.y_m[k] - u_from.y_m[k]);
+  }
+  sum.top_work += force_N_per_m * (to.shear_m - from.shear_m);
+}
+
+void add_event_works(const record::Energies& of_event, record::Energies& sum) {
+  for (const auto& term : record::energy_terms)
+    if (term.kind == record::EnergyKind::work) sum.*term.member += of_event.*term.member;
 }
 
 }  // namespace
 
-Rest rest_of(const motion::Snapshot& snapshot, const InitialState& initial, double shear_m) {
-  Rest rest{.shear_m = shear_m, .contact = {}, .u_x_m = {}};
-  const auto& u = snapshot.u_m;
-  double u_max = 0;
-  for (const double u_y : u.y) u_max = std::max(u_max, std::abs(u_y));
-  for (std::size_t k = 0; k < initial.mesh.interface_nodes.size(); ++k) {
-    const auto n = initial.mesh.interface_nodes[k];
-    double u_x = u.x[n], gap = initial.mesh.y_m[n] + u.y[n];
-    if (initial.base) {
-      const auto m = initial.base->interface_nodes[k];
-      const auto below = static_cast<std::size_t>(initial.mesh.n_nodes() + m);
-      u_x -= u.x[below];
-      gap += initial.base->y_m[m] - u.y[below];
-    }
-    constexpr double rounding = 1e-9;
-    rest.contact.push_back(gap > rounding * u_max ? statics::Contact::open : statics::Contact::stick);
-    rest.u_x_m.push_back(u_x);
-  }
-  return rest;
-}
-
-Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor)
+Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, const Processes& processes)
     : config_(config),
-      initial_(make_initial_state(config, monitor)),
-      statics_(statics_of(config_, initial_, monitor)) {}
-
-statics::Equilibrium Sequence::hold(const Rest& rest) {
-  statics_.hold(rest.contact, rest.u_x_m);
-  shear_m_ = rest.shear_m;
-  return statics_.shear_by(shear_m_);
+      initial_(unloaded_state(config, processes)),
+      statics_(statics_of(config_, initial_, [monitor] { return monitor(0, 0); })),
+      plate_(solid::make_operator(initial_.mesh, config.material)) {
+  if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
+  describe_solver(config, statics_, initial_);
+  at_rest_ = statics_.tilted();
+  loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
+  loading_.back().energies.strain = strain_energy_J_per_m(at_rest_);
 }
 
-const InitialState& Sequence::next() {
+double Sequence::time_s(double shear_m) const {
+  return shear_m / top_speed_m_per_s(config_);
+}
+
+double Sequence::strain_energy_J_per_m(const statics::Equilibrium& state) const {
+  double energy = solid::strain_energy_J_per_m(plate_, state.u_m);
+  if (base_) energy += solid::strain_energy_J_per_m(*base_, state.below_u_m);
+  return energy;
+}
+
+LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
+  LoadingRow row = loading_.empty() ? LoadingRow{} : loading_.back();
+  row.phase = phase;
+  row.n_events = static_cast<std::int32_t>(events_.size());
+  row.shear_m = shear_m;
+  row.time_s = time_s(shear_m);
+  row.energies.time_s = row.time_s;
+  row.energies.kinetic = 0;
+  double normal = 0, shear = 0, moment = 0;
+  for (std::size_t k = 0; k < initial_.tributary_m.size(); ++k) {
+    const double p = tractions.p_s_Pa[k] * initial_.tributary_m[k];
+    normal += p;
+    shear += tractions.t_s_Pa[k] * initial_.tributary_m[k];
+    moment += p * tractions.x_m[k];
+  }
+  row.normal_force_N_per_m = normal;
+  row.shear_force_N_per_m = shear;
+  row.shear_over_normal = shear / normal;
+  row.normal_force_x_m = moment / normal;
+  return row;
+}
+
+std::string Sequence::end() const {
+  const auto& sequence = config_.sequence;
+  if (std::ssize(events_) >= sequence.max_events)
+    return fmt::format("sequence.max_events = {} was reached", sequence.max_events);
+  if (sequence.to_global_sliding && !events_.empty() && events_.back().is_global != 0)
+    return "all nodes inside have slipped in one event";
+  return {};
+}
+
+void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
+  auto loaded = row(phase, state.shear_m, state.tractions);
+  add_works(initial_, at_rest_, state, loaded.energies);
+  loaded.energies.strain = strain_energy_J_per_m(state);
+  if (phase == LoadingPhase::event_begins) loaded.n_events += 1;
+  loading_.push_back(loaded);
+}
+
+const InitialState* Sequence::next() {
+  const auto start = Clock::now();
   const double margin = config_.loading.critical_margin;
-  const auto at_least = [&](double share) {
-    auto state = statics_.shear_to(share);
-    return state.shear_m > shear_m_ ? std::move(state) : statics_.shear_by(shear_m_);
+  const auto at_least = [&](statics::Equilibrium state) {
+    return state.shear_m > at_rest_.shear_m ? std::move(state) : statics_.shear_by(at_rest_.shear_m);
   };
-  initial_.common = at_least(1 - margin);
-  initial_.spontaneous = at_least(1 + margin);
   initial_.critical_shear_m = statics_.shear_to(1).shear_m;
-  return initial_;
+  initial_.common = at_least(statics_.shear_to(1 - margin));
+  initial_.spontaneous = at_least(statics_.shear_to(1 + margin));
+  const double end_s = config_.sequence.end_s;
+  if (time_s(initial_.spontaneous.shear_m) > end_s) {
+    load_to(LoadingPhase::loaded, statics_.shear_by(std::max(at_rest_.shear_m, end_s * top_speed_m_per_s(config_))));
+    return nullptr;
+  }
+  load_to(LoadingPhase::event_begins, initial_.spontaneous);
+  initial_.wall_s = seconds_since(start);
+  return &initial_;
+}
+
+void Sequence::take(const Result& result) {
+  const auto& event = result.event;
+  if (event.end != motion::EventEnd::quiet)
+    throw UserError(
+        "event {} has not come to rest: {}; choose a later {}, a larger {}, or edges that absorb",
+        events_.size() + 1, end_of_event(result), Key("time.end_s"), Key("material.stiffness_damping_s"));
+  const auto begins = loading_.back();
+  const auto& row_at_end = event.last_row;
+  const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
+  const auto u = relative(initial_, initial_.spontaneous);
+  held_.shear_m = begins.shear_m + top_speed_m_per_s(config_) * event.time_s;
+  held_.contact.clear();
+  held_.u_x_m.clear();
+  for (std::size_t k = 0; k < u.x_m.size(); ++k) {
+    held_.contact.push_back(row_at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
+    held_.u_x_m.push_back(u.x_m[k] + row_at_end.slip_m[k]);
+  }
+  auto ends = row(LoadingPhase::slip_ends, held_.shear_m, tractions_at_end);
+  ends.n_events += 1;
+  // Changes, since the strain energy of a motion belongs to half a step earlier.
+  const auto &first = event.energies.front(), &last = event.energies.back();
+  ends.energies.kinetic = last.kinetic;
+  ends.energies.strain = begins.energies.stored() + last.stored() - first.stored() - last.kinetic;
+  add_event_works(last, ends.energies);
+  loading_.push_back(ends);
+
+  rest();
+  auto rests = row(LoadingPhase::at_rest, held_.shear_m, at_rest_.tractions);
+  rests.n_events += 1;
+  rests.energies.strain = strain_energy_J_per_m(at_rest_);
+  rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
+  loading_.push_back(rests);
+  add_event(result, begins, rests, at_rest_.tractions);
+}
+
+void Sequence::rest() {
+  statics_.hold(held_.contact, held_.u_x_m);
+  at_rest_ = statics_.shear_by(held_.shear_m);
+}
+
+void Sequence::add_event(const Result& result, const LoadingRow& before, const LoadingRow& after,
+                         const record::StaticState& tractions_after) {
+  const auto& record = result.event.record;
+  const auto& state = initial_.spontaneous;
+  const auto is_inside = [&](std::int32_t node) { return state.is_inside(record.x_m[node]); };
+  record::SequenceEvent e;
+  e.begin_s = before.time_s;
+  e.shear_m = before.shear_m;
+  std::vector<bool> slips(record.x_m.size());
+  double first_s = nan, last_s = nan;
+  for (const auto& onset : record.onsets) {
+    slips[onset.node] = true;
+    if (!std::isnan(first_s) || !is_inside(onset.node)) continue;
+    first_s = onset.time_s;
+    e.begin_x_m = record.x_m[onset.node];
+  }
+  for (const auto& stop : record.stops)
+    if (is_inside(stop.node)) last_s = stop.time_s;
+  e.slip_s = last_s - first_s;
+  e.is_global = 1;
+  double drop_N_per_m = 0;
+  for (std::size_t k = 0; k < slips.size(); ++k) {
+    if (!slips[k]) {
+      if (is_inside(static_cast<std::int32_t>(k))) e.is_global = 0;
+      continue;
+    }
+    const double a = initial_.tributary_m[k], slip_m = result.event.last_row.slip_m[k];
+    e.from_x_m = std::isnan(e.from_x_m) ? record.x_m[k] : e.from_x_m;
+    e.to_x_m = record.x_m[k];
+    e.length_m += a;
+    e.potency_m2 += slip_m * a;
+    e.max_slip_m = std::max(e.max_slip_m, slip_m);
+    drop_N_per_m += a * (state.tractions.t_s_Pa[k] - tractions_after.t_s_Pa[k]);
+    if (const double work = result.event.breakdown.work_J_per_m2[k]; !std::isnan(work))
+      e.breakdown_work_J_per_m += work * a;
+  }
+  e.mean_slip_m = e.potency_m2 / e.length_m;
+  e.stress_drop_Pa = drop_N_per_m / e.length_m;
+  e.normal_force_N_per_m = before.normal_force_N_per_m;
+  e.shear_force_N_per_m = before.shear_force_N_per_m;
+  e.friction_before = before.shear_over_normal;
+  e.friction_after = after.shear_over_normal;
+  e.released_J_per_m = before.energies.stored() - after.energies.stored();
+  e.friction_work_J_per_m = -result.event.energies.back().friction_work;
+  e.wave_loss_J_per_m = after.wave_loss_J_per_m - before.wave_loss_J_per_m;
+  e.n_fronts = static_cast<double>(result.fronts.size());
+  const auto longest = std::ranges::max_element(result.fronts, {}, [](const auto& f) { return f.points.size(); });
+  if (longest != result.fronts.end()) {
+    std::vector<double> speeds;
+    for (const auto& point : longest->points) speeds.push_back(point.v_tip_m_per_s);
+    e.median_speed_m_per_s = fronts::median(speeds);
+  }
+  events_.push_back(e);
+}
+
+void Sequence::serialize(StateArchive& archive) {
+  archive(held_.shear_m, held_.contact, held_.u_x_m, loading_, events_);
+  if (!archive.is_loading()) return;
+  const std::size_t n = initial_.tributary_m.size();
+  const auto are_finite = [](const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  };
+  require_possible(!events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n &&
+                       are_finite(held_.u_x_m) && std::isfinite(held_.shear_m) &&
+                       std::ranges::max(held_.contact) <= statics::Contact::open &&
+                       loading_.size() == 1 + 3 * events_.size() &&
+                       std::ranges::all_of(loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::at_rest; }),
+                   "a sequence");
+  rest();
 }
 
 }  // namespace slipfront::run

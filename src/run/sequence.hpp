@@ -1,44 +1,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "record/sequence.hpp"
 #include "run/initial_state.hpp"
+#include "run/run.hpp"
+#include "solid/operator.hpp"
 
 namespace slipfront::run {
 
-/// Where an event has left the interface. [interface nodes]
-struct Rest {
-  double shear_m = 0;  ///< of the loaded edge since the tilt
-  std::vector<statics::Contact> contact;
-  std::vector<double> u_x_m;  ///< along x, relative to a base
-};
-
-/// @param initial  with which the event began, its meshes whole
-/// @param shear_m  of the loaded edge now
-Rest rest_of(const motion::Snapshot& snapshot, const InitialState& initial, double shear_m);
-
-/// A sample that is loaded by static equilibria from one spontaneous event to the next: its upper edge is moved
-/// on along x, its interface sticks where the last event has left it, and has the static strength again. The
-/// statics are factorised once.
+/// A sample that is loaded by static equilibria from one spontaneous event to the next. Where an event has left
+/// its interface, it sticks and has its static strength again: the tractions that it carries there are those
+/// of the equilibrium with the slip so far. The statics are factorised once.
 class Sequence {
  public:
+  /// @param monitor  asked between linear solutions
   /// @throws UserError, Interrupted as make_initial_state
-  Sequence(const input::Case& config, const motion::Monitor& monitor);
+  Sequence(const input::Case& config, const motion::Monitor& monitor,
+           const Processes& processes = one_process());
+  Sequence(const Sequence&) = delete;
+  Sequence& operator=(const Sequence&) = delete;
 
-  /// The state in which the next event begins: the first one where t/p inside passes mu_s, by
-  /// loading.critical_margin, or where the last event has left the sample if it does there.
+  /// Why no event follows, in words; empty where one does.
+  std::string end() const;
+  /// Loads the sample to the state in which the next event begins: the first one where t/p inside passes mu_s,
+  /// by loading.critical_margin, or where the last event has left it if it does so there.
+  /// @return null where that is beyond sequence.end_s, to which the sample is loaded then
   /// @throws UserError where no shear does it
-  const InitialState& next();
-  /// Goes on from where an event has left the interface.
-  /// @return the equilibrium there
-  statics::Equilibrium hold(const Rest& rest);
+  const InitialState* next();
+  /// Finds the equilibrium behind the event that has begun so.
+  /// @throws UserError where it has not come to rest
+  void take(const Result& result);
+
+  const std::vector<record::SequenceEvent>& events() const { return events_; }
+  const std::vector<record::LoadingRow>& loading() const { return loading_; }
+
+  /// Between events.
+  void serialize(StateArchive& archive);
 
  private:
+  /// Where nodes in contact stick.
+  struct Held {
+    double shear_m = 0;
+    std::vector<statics::Contact> contact;
+    std::vector<double> u_x_m;  ///< [interface nodes] relative to a base
+  };
+
+  /// Finds the equilibrium of held_.
+  void rest();
+  double time_s(double shear_m) const;
+  /// Adds the row of an equilibrium after the last one.
+  void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
+  double strain_energy_J_per_m(const statics::Equilibrium& state) const;
+  /// With the works so far.
+  record::LoadingRow row(record::LoadingPhase phase, double shear_m, const record::StaticState& tractions) const;
+  void add_event(const Result& result, const record::LoadingRow& before, const record::LoadingRow& after,
+                 const record::StaticState& tractions_after);
+
   input::Case config_;
   InitialState initial_;
   statics::Statics statics_;
-  double shear_m_ = 0;
+  solid::Operator plate_;
+  std::optional<solid::Operator> base_;
+  statics::Equilibrium at_rest_;  ///< before the next event
+  Held held_;                     ///< empty before the first event
+  std::vector<record::LoadingRow> loading_;
+  std::vector<record::SequenceEvent> events_;
 };
 
 }  // namespace slipfront::run

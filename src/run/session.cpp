@@ -53,9 +53,7 @@ class Session {
     if (!is_root()) return;
     dir_ = folder->unfinished();
     checkpoints_.emplace(folder->state());
-    head_.case_text = resolved_text(config);
-    head_.prestress_table = config.prestress.table.text;
-    head_.friction_table = config.friction_along_x.table.text;
+    head_ = checkpoint_head(config);
   }
 
   /// From a checkpoint, or from the beginning.
@@ -166,6 +164,7 @@ void Session::fail(const char* status, const std::string& reason) noexcept {
 }
 
 InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
+  if (options_.initial_state) return options_.initial_state();
   std::optional<SharedStates> shared;
   if (options_.shared_states) shared.emplace(*options_.shared_states);
   if (shared)
@@ -397,24 +396,39 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks) {
+  const auto config = unfinished_case(folder, expected);
+  auto kept = Checkpoints(folder.state()).last(hooks.note);
+  if (kept) require_of_same_work(kept->head, folder, config);
+  // As it was, however it was written meanwhile.
+  files::write_text(folder.unfinished() / case_file, resolved_text(config));
+  return run_shared(folder, config, options, hooks, true, std::move(kept));
+}
+
+input::Case unfinished_case(const results::ResultFolder& folder, const input::Case* expected) {
   const auto file = folder.unfinished() / case_file;
   if (!folder.has_unfinished() || !files::is_there(file))
     throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
-  const input::Case config = input::read_case(file);
-  const std::string text = resolved_text(config);
   if (expected != nullptr) require_same_case(*expected, folder.unfinished());
-  auto kept = Checkpoints(folder.state()).last(hooks.note);
-  if (kept) {
-    if (kept->head.program != program_identity())
-      throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
-                      folder.unfinished().string(), files::one_line(kept->head.program), program_identity());
-    require_same(text, kept->head.case_text, file.string());
-    require_unchanged(config.prestress.table.text, kept->head.prestress_table, config.prestress.file);
-    require_unchanged(config.friction_along_x.table.text, kept->head.friction_table,
-                      config.friction_along_x.file);
-  }
-  files::write_text(file, text);  // as it was, however it was written meanwhile
-  return run_shared(folder, config, options, hooks, true, std::move(kept));
+  return input::read_case(file);
+}
+
+CheckpointHead checkpoint_head(const input::Case& config) {
+  CheckpointHead head;
+  head.case_text = resolved_text(config);
+  head.prestress_table = config.prestress.table.text;
+  head.friction_table = config.friction_along_x.table.text;
+  return head;
+}
+
+void require_of_same_work(const CheckpointHead& kept, const results::ResultFolder& folder,
+                          const input::Case& config) {
+  const auto dir = folder.unfinished();
+  if (kept.program != program_identity())
+    throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
+                    dir.string(), files::one_line(kept.program), program_identity());
+  require_same(resolved_text(config), kept.case_text, (dir / case_file).string());
+  require_unchanged(config.prestress.table.text, kept.prestress_table, config.prestress.file);
+  require_unchanged(config.friction_along_x.table.text, kept.friction_table, config.friction_along_x.file);
 }
 
 void take_part(Processes& processes) {
@@ -463,8 +477,9 @@ void require_same_case(const input::Case& wanted, const std::filesystem::path& d
 }
 
 bool is_complete(const std::filesystem::path& dir) {
-  return files::is_there(dir / files::checksum_list) && files::is_there(dir / "run.json") &&
-         files::is_there(dir / results::history_file);
+  const auto is_there = [&](const char* name) { return files::is_there(dir / name); };
+  return is_there(files::checksum_list) &&
+         (is_there(sequence_file) || (is_there("run.json") && is_there(results::history_file)));
 }
 
 }  // namespace slipfront::run

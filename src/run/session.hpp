@@ -8,6 +8,7 @@
 
 #include "base/numbers.hpp"
 #include "results/folder.hpp"
+#include "run/checkpoint.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -24,6 +25,8 @@ struct SessionOptions {
   double keep_every_wall_s = 300;            ///< wall time between checkpoints
   double keep_every_s = infinity;            ///< simulated time between them
   std::optional<std::string> shared_states;  ///< folder of SharedStates, see there
+  /// Makes the state in which the event begins, on rank 0; else it is that of the case.
+  std::function<InitialState()> initial_state;
   /// Makes further observers of the event, where it begins and where it goes on.
   std::function<motion::Observers()> observers;
   Processes* processes = &one_process();  ///< the ranks that share the event
@@ -46,7 +49,7 @@ struct Finished {
 /// The kind of work that a run is, see results::ResultFolder.
 inline constexpr const char* run_work = "run";
 
-/// Runs a case into its folder. While it goes, DIR/unfinished has the case, run.json with its status, and
+/// Runs a case of one event into its folder. While it goes, DIR/unfinished has the case, run.json with its status, and
 /// what there is of the results; every now and then a checkpoint is kept there, from which resume goes on. A
 /// run that is complete is published to DIR; one that was interrupted or blew up stays where it is.
 /// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
@@ -60,6 +63,18 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 /// @throws UserError where there is none, or it is one of another program or case
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks);
+
+/// The case of the work that was left unfinished in a folder.
+/// @param expected  a case that it must be, or null
+/// @throws UserError where there is none, or it is another case
+input::Case unfinished_case(const results::ResultFolder& folder, const input::Case* expected);
+/// Refuses a checkpoint of another program or case.
+/// @param config  unfinished_case
+/// @throws UserError
+void require_of_same_work(const CheckpointHead& kept, const results::ResultFolder& folder,
+                          const input::Case& config);
+/// Of checkpoints of a case.
+CheckpointHead checkpoint_head(const input::Case& config);
 
 /// On the ranks but 0: their parts of the runs that rank 0 begins or goes on with, until it releases them.
 void take_part(Processes& processes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -338,6 +339,44 @@ void write_static(const std::filesystem::path& dir, const input::Case& config, c
 
 void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status) {
   write_json(dir, about(config, status));
+}
+
+namespace {
+
+/// How far the energies of a sequence are from balance, over the largest of their terms.
+double largest_imbalance(std::span<const record::LoadingRow> loading) {
+  double imbalance = 0, largest = 0;
+  for (const auto& row : loading) {
+    imbalance = std::max(imbalance, std::abs(record::imbalance_J_per_m(row, loading.front())));
+    for (const auto& term : record::energy_terms) largest = std::max(largest, std::abs(row.energies.*term.member));
+  }
+  return imbalance / largest;
+}
+
+Json loads_json(const record::LoadingRow& row) {
+  Json json = {{"event", row.n_events}, {"phase", record::name(row.phase)}};
+  for (const auto& field : record::loading_fields) json[field.name] = row.*field.member;
+  return json;
+}
+
+}  // namespace
+
+void write_sequence(const std::filesystem::path& dir, const input::Case& config,
+                    std::span<const record::SequenceEvent> events, std::span<const record::LoadingRow> loading,
+                    const std::string& end, const Status& status) {
+  results::write_events(dir / "events.csv", events);
+  results::write_loading(dir / "loading.csv", loading);
+  auto json = about(config, status);
+  json["end"] = end.empty() ? Json() : Json(end);
+  json["wave_speeds"] = speeds_json(wave_speeds(config.material));
+  json["events"] = events.size();
+  if (!loading.empty()) {
+    const auto strongest = std::ranges::max_element(loading, {}, &record::LoadingRow::shear_over_normal);
+    json["largest_friction"] = loads_json(*strongest);
+    json["last"] = loads_json(loading.back());
+    json["imbalance_over_largest_energy"] = largest_imbalance(loading);
+  }
+  files::write_text(dir / sequence_file, json.dump(2) + "\n");
 }
 
 void write_so_far(const std::filesystem::path& dir, const Result& result,

@@ -162,8 +162,11 @@ class ContactProblem {
         if (excess > tolerance * p_max && may_slip(k))
           changes.push_back({k, Contact::slip, t > 0 ? 1.0 : -1.0, excess / p_max});
       } else {
+        // Where it may not slip any more it did so in a guess: the edge that it was near to has moved.
+        const bool has_to_stick = !may_slip(k);
         const double backward = -slip_sign[k] * (u_x_m(k, shear) - anchor_x_m[k]);
-        if (backward > tolerance * u_scale) changes.push_back({k, Contact::stick, 0, backward / u_scale});
+        if (backward > tolerance * u_scale || has_to_stick)
+          changes.push_back({k, Contact::stick, 0, has_to_stick ? 1.0 : backward / u_scale});
       }
     }
     if (one_only && changes.size() > 1)
@@ -489,6 +492,9 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
   held_contact_ = std::move(contact);
   held_u_x_m_ = std::move(u_x_m);
   last_.reset();
+  // What was solved before leaves no rounding behind.
+  const auto tilted_u = displacement_of(tilted_);
+  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 Equilibrium Statics::shear_by(double shear_m) const {

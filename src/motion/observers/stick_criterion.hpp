@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "motion/observer.hpp"
+#include "statics/statics.hpp"
+
+namespace slipfront::motion {
+
+/// A part of the interface, m.
+struct Stretch {
+  double from_m = 0, to_m = 0;
+};
+
+/// Criterion of the end of an event that static equilibria follow: all nodes of a stretch have stuck for some
+/// time, whatever waves are left. Beside it, at the edges of contact, equilibria slip as well.
+class StickCriterion final : public Observer {
+ public:
+  /// @param state  in which the event begins, all nodes sticking
+  StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s);
+
+  void at_update(const SlipUpdate& seen) override;
+  bool after_step(const Now& now, const SlipRates& /*rates*/) override { return !is_at_rest(now); }
+  std::int64_t guaranteed_steps(const Now& now) const override;
+  std::optional<End> end(Pause& pause) override;
+
+  const char* name() const override { return "stick"; }
+  void archive(StateArchive& archive) override { archive(is_slipping_, since_s_); }
+  void restored(Pause& pause) override;
+
+ private:
+  bool is_at_rest(const Now& now) const { return n_slipping_ == 0 && now.time_s() - since_s_ > quiet_s_; }
+
+  std::vector<std::uint8_t> is_within_;
+  std::vector<std::uint8_t> is_slipping_;  ///< [nodes] of those within
+  std::int64_t n_slipping_ = 0;            ///< the number of these
+  double quiet_s_, since_s_ = 0;           ///< since then none slips
+};
+
+}  // namespace slipfront::motion

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/sequence_session.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "base/error.hpp"
+#include "files/files.hpp"
+#include "run/checkpoint.hpp"
+#include "run/sequence.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+/// The kind of work that an event's folder holds; it is gone on with as part of its sequence.
+constexpr const char* event_work = "event of a sequence";
+
+/// A sequence on rank 0; its events are runs on all ranks.
+class SequenceSession {
+ public:
+  SequenceSession(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+                  const SessionHooks& hooks, const EventDone& done)
+      : folder_(folder),
+        config_(config),
+        hooks_(hooks),
+        done_(done),
+        options_(options),
+        checkpoints_(folder.state()),
+        head_(checkpoint_head(config)) {}
+
+  /// From a checkpoint, or from the beginning.
+  FinishedSequence run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed);
+
+ private:
+  void begin(Checkpoints::Checkpoint* kept);
+  /// The next event. @return false where none begins
+  bool run_event();
+  /// Between events.
+  void keep();
+  void write(const std::string& end, const Status& status);
+  void fail(const char* status, const std::string& reason) noexcept;
+  std::filesystem::path event_dir() const {
+    return folder_.unfinished() / "events" / fmt::format("{:04}", sequence_->events().size() + 1);
+  }
+
+  results::ResultFolder& folder_;
+  const input::Case& config_;
+  const SessionHooks& hooks_;
+  const EventDone& done_;
+  SessionOptions options_;
+  Checkpoints checkpoints_;
+  CheckpointHead head_;
+  std::unique_ptr<Sequence> sequence_;
+};
+
+FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed) {
+  try {
+    begin(kept.get());
+    kept.reset();
+    std::string end;
+    while ((end = sequence_->end()).empty() && run_event()) {
+      write("", {"running", "", head_.sessions});
+      keep();
+      done_(sequence_->events().size(), sequence_->events().back());
+    }
+    if (end.empty()) end = fmt::format("no event begins before sequence.end_s = {:g} s", config_.sequence.end_s);
+    write_case(folder_.unfinished(), config_);
+    write(end, {"complete", "", head_.sessions});
+    folder_.publish();
+    return {sequence_->events(), sequence_->loading(), end};
+  } catch (const Interrupted& error) {
+    fail("interrupted", error.what());
+    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(folder_)));
+  } catch (const BlowUp& error) {
+    fail("blew_up", error.what());
+    throw;
+  } catch (const std::exception& error) {
+    const bool has_events = sequence_ && !sequence_->events().empty();
+    if (resumed || has_events) {
+      fail("failed", error.what());
+    } else {
+      folder_.abandon();
+    }
+    throw;
+  }
+}
+
+void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
+  if (kept != nullptr) head_.sessions = kept->head.sessions + 1;
+  write_sequence(folder_.unfinished(), config_, {}, {}, "", {"running", "", head_.sessions});
+  sequence_ = std::make_unique<Sequence>(
+      config_, [this](std::int64_t, std::int64_t) { return hooks_.request() != Request::stop; },
+      *options_.processes);
+  if (kept == nullptr) return;
+  try {
+    sequence_->serialize(kept->rest);
+    kept->rest.close();
+  } catch (const StateError& error) {
+    throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
+  }
+}
+
+bool SequenceSession::run_event() {
+  const auto* initial = sequence_->next();
+  if (initial == nullptr) return false;
+  const auto part = fmt::format("event {}", sequence_->events().size() + 1);
+  auto hooks = hooks_;
+  hooks.progress = [&](const char* /*part*/, std::int64_t step, std::int64_t total) {
+    hooks_.progress(part.c_str(), step, total);
+  };
+  options_.initial_state = [initial] { return *initial; };
+  results::ResultFolder event_folder(event_dir(), event_work, &folder_);
+  const auto finished = event_folder.has_unfinished() ? resume(event_folder, nullptr, options_, hooks)
+                                                      : run_into(event_folder, config_, options_, hooks);
+  const auto& event = finished.result.event;
+  if (event.end == motion::EventEnd::interrupted)
+    throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
+  if (event.end == motion::EventEnd::blow_up)
+    throw BlowUp(fmt::format("{}: {}; {}", part, event.reason, what_was_kept(folder_)));
+  sequence_->take(finished.result);
+  return true;
+}
+
+void SequenceSession::keep() {
+  checkpoints_.keep(head_, [&](results::OutputArchive& archive) { sequence_->serialize(archive); });
+}
+
+void SequenceSession::write(const std::string& end, const Status& status) {
+  write_sequence(folder_.unfinished(), config_, sequence_->events(), sequence_->loading(), end, status);
+}
+
+void SequenceSession::fail(const char* status, const std::string& reason) noexcept {
+  try {
+    if (sequence_) write("", {status, reason, head_.sessions});
+  } catch (...) {
+    // What made the sequence fail may also keep its reason from being written.
+  }
+}
+
+}  // namespace
+
+FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::Case& config,
+                                   const SessionOptions& options, const SessionHooks& hooks,
+                                   const EventDone& done) {
+  try {
+    folder.begin();
+    write_case(folder.unfinished(), config);
+  } catch (const WriteError&) {
+    folder.abandon();
+    throw;
+  }
+  return SequenceSession(folder, config, options, hooks, done).run({}, false);
+}
+
+FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
+                                 const SessionOptions& options, const SessionHooks& hooks,
+                                 const EventDone& done) {
+  const auto config = unfinished_case(folder, expected);
+  auto kept = Checkpoints(folder.state()).last(hooks.note);
+  if (kept) require_of_same_work(kept->head, folder, config);
+  files::write_text(folder.unfinished() / case_file, resolved_text(config));
+  return SequenceSession(folder, config, options, hooks, done).run(std::move(kept), true);
+}
+
+}  // namespace slipfront::run
