@@ -73,6 +73,23 @@ std::vector<NamedCase> paper_cases(bool quick) {
   return cases;
 }
 
+std::vector<NamedCase> sequences(bool quick) {
+  std::vector<NamedCase> cases;
+  for (const double mu_k : {0.6, 1.0}) {
+    auto c = base_case(interface::EventKind::spontaneous, quick);
+    c.title = fmt::format("loaded on to global sliding, mu_k = {:.1f}", mu_k);
+    c.friction.parameter("mu_k") = mu_k;
+    c.loading.shear_speed_over_c_L = 1e-9;
+    c.sequence.max_events = 1000;
+    c.sequence.to_global_sliding = true;
+    c.time.quiet_s = 0.45e-3;  // a period of shear waves between interface and top edge
+    c.time.end_s = 10e-3;
+    c.output.history_interval_s = 2e-6;
+    cases.push_back({fmt::format("mu_k_{:.1f}", mu_k), c});
+  }
+  return cases;
+}
+
 namespace {
 
 using interface::EventKind;

@@ -20,6 +20,10 @@ struct NamedCase {
 /// files of papers/kammer2012. `quick`: elements of 2 mm.
 std::vector<NamedCase> paper_cases(bool quick);
 
+/// The paper's plate with both values of mu_k, loaded on until all nodes inside have slipped in one event:
+/// mu_k_0.6, mu_k_1.0.
+std::vector<NamedCase> sequences(bool quick);
+
 /// One value of a study's parameter, with its runs.
 struct StudyPoint {
   std::string value;             ///< as it stands in the case file

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "papers/kammer2012/reproduce.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "results/folder.hpp"
 #include "run/batch.hpp"
 #include "run/checkpoint.hpp"
+#include "run/sequence_session.hpp"
 
 namespace slipfront::kammer2012 {
 
@@ -55,6 +57,24 @@ class Runner {
         },
         [&](std::size_t k) { return is_written(dir_ / cases[k].name); });
     return outcomes;
+  }
+
+  /// Loads a plate on until all of it slips in one event.
+  LoadedOn run_sequence(const NamedCase& named, const results::ResultFolder& within, int threads) {
+    results::ResultFolder folder(dir_ / named.name, run::run_work, &within);
+    run::SessionOptions options;
+    options.threads = threads;
+    const run::SessionHooks hooks{[](const char*, std::int64_t, std::int64_t) {},
+                                  [this] { return wanted({}) ? run::Request::none : run::Request::stop; },
+                                  [](const std::string&) {}};
+    const auto finished = run::run_sequence_into(folder, named.config, options, hooks,
+                                                 [](std::size_t, const record::SequenceEvent&) {});
+    wanted(named.name);
+    const auto& friction = named.config.friction;
+    const auto strongest =
+        std::ranges::max_element(finished.loading, {}, &record::LoadingRow::shear_over_normal);
+    return {interface::static_coefficient(friction), interface::kinetic_coefficient(friction),
+            strongest->shear_over_normal, finished.events.size()};
   }
 
   const run::Counts& counts() const { return batch_.counts(); }
@@ -168,10 +188,11 @@ Given read_given(const ReproduceOptions& options) {
 struct Plan {
   std::vector<NamedCase> events;
   std::vector<Study> studies;
+  std::vector<NamedCase> sequences;
   std::vector<Variation> variations;
 
   std::size_t n_runs() const {
-    std::size_t n = events.size() + list_cases(studies, "").size();
+    std::size_t n = events.size() + sequences.size() + list_cases(studies, "").size();
     for (const auto& variation : variations) n += list_cases(variation).size();
     return n;
   }
@@ -179,6 +200,7 @@ struct Plan {
 
 Plan make_plan(const ReproduceOptions& options) {
   return {paper_cases(options.quick), options.regularised ? regularised_studies() : studies(options.quick),
+          sequences(options.quick),
           options.sensitivity ? variations(options.quick) : std::vector<Variation>{}};
 }
 
@@ -235,6 +257,9 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   auto outcomes = runner.run(list_cases(plan.studies, ""));
   runs.studies = by_study(plan.studies, outcomes);
   laps.end("studies");
+  for (const auto& c : plan.sequences)
+    runs.loaded_on.push_back(runner.run_sequence({"sequences/" + c.name, c.config}, folder, options.threads));
+  laps.end("sequences");
   ReproduceReport report;
   report.claims = scorecard(runs);
   for (const auto& variation : plan.variations) run_variation(variation, given, runner, report.claims);

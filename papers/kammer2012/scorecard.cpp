@@ -104,6 +104,7 @@ class Scorecard {
     slip_modes();
     transition_parameter();
     longitudinal_wave();
+    global_friction();
     experiment();
     std::ranges::move(second_tests(r_, claims_), std::back_inserter(claims_));
     choose_verdicts(claims_);
@@ -762,6 +763,27 @@ class Scorecard {
         supershear > 0 && behind == supershear,
         "left-triggered: wherever V_tip exceeds c_S the tip is behind the wave from the trigger zone's inner "
         "end");
+  }
+
+  void global_friction() {
+    constexpr double most_of_local = 0.9;
+    std::string measured;
+    std::vector<Figure> figures;
+    bool holds = true;
+    for (const auto& l : r_.loaded_on) {
+      measured +=
+          fmt::format("{}mu_k = {:g}: {:.3f}, {} of {:g}, after {} events", measured.empty() ? "" : "; ",
+                      l.mu_k, l.largest_friction, percent(l.largest_friction / l.mu_s), l.mu_s, l.n_events);
+      figures.push_back({fmt::format("mu_k = {:g}", l.mu_k), l.largest_friction, ""});
+      holds = holds && l.largest_friction <= most_of_local * l.mu_s;
+    }
+    add("C24", "the local mu_s is considerably higher than the global static coefficient of friction",
+        "Set-up", measured.empty() ? "not tested: no sequences" : measured, std::move(figures),
+        measured.empty() ? std::nullopt : std::optional(holds),
+        fmt::format(
+            "the plate loaded on until all nodes inside slip in one event: largest F_S/F_N before it at "
+            "most {:g} mu_s, for both mu_k",
+            most_of_local));
   }
 
   const Reproduction& r_;

@@ -65,12 +65,20 @@ struct TriggerSample {
   int n_holding = 0;
 };
 
+/// The plate loaded on until all of it has slipped in one event.
+struct LoadedOn {
+  double mu_s = 0, mu_k = 0;
+  double largest_friction = 0;  ///< F_S/F_N
+  std::size_t n_events = 0;
+};
+
 /// All runs of a reproduction.
 struct Reproduction {
   Outcome spontaneous, left, right, spontaneous_mu_k_1;
   std::vector<StudyOutcome> studies;
   std::optional<input::Experiment> experiment;  ///< measured points, where the user has a file of them
   std::optional<TriggerSample> triggers = {};   ///< where the open choices were studied
+  std::vector<LoadedOn> loaded_on = {};         ///< of both mu_k, where all of it slipped; else none
 };
 
 /// Tests every claim; each row says how. Rows whose id ends in + are further tests beside the first one, rows

@@ -41,8 +41,7 @@ double c_S_m_per_s(const Case& config) {
 DefaultRule shear_speed_rule() {
   constexpr double between_events = 1e-9;
   return {"loading.shear_speed_over_c_L",
-          "`1e-06`; `0` with loading.method = prestress; `1e-09` in a sequence",
-          [](const Case& c) -> Value {
+          "`1e-06`; `0` with loading.method = prestress; `1e-09` in a sequence", [](const Case& c) -> Value {
             if (is_sequence(c)) return between_events;
             return is_prestressed(c) ? 0.0 : Case{}.loading.shear_speed_over_c_L;
           }};

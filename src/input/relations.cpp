@@ -370,11 +370,12 @@ void check_sequence(const Case& config) {
   const Key quiet("time.quiet_s"), events("sequence.max_events");
   const double quiet_s = config.time.quiet_s;
   if (!(quiet_s < config.time.end_s))
-    throw UserError("{} is {:g} s; with {} > 1 it must be less than {} = {:g} s: each event comes to rest", quiet,
-                    quiet_s, events, Key("time.end_s"), config.time.end_s);
+    throw UserError("{} is {:g} s; with {} > 1 it must be less than {} = {:g} s: each event comes to rest",
+                    quiet, quiet_s, events, Key("time.end_s"), config.time.end_s);
   if (const double interval_s = config.output.history_interval_s; interval_s > 0.5 * quiet_s)
     throw UserError(
-        "{} is {:g} s; with {} > 1 it must be at most half of {} = {:g} s, so that a row shows each event at rest",
+        "{} is {:g} s; with {} > 1 it must be at most half of {} = {:g} s, so that a row shows each event at "
+        "rest",
         Key("output.history_interval_s"), interval_s, events, quiet, quiet_s);
 }
 

@@ -45,7 +45,8 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   const auto start = stepper_.energies();
   Observers list;
   list.push_back(std::make_unique<Onsets>(state.tractions.x_m, halo));
-  list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, state.tractions.x_m.size(), *output));
+  list.push_back(
+      std::make_unique<HistoryRows>(sampling.history_interval_s, state.tractions.x_m.size(), *output));
   list.push_back(std::make_unique<TipSlips>(state, sampling.history_interval_s));
   if (!stepper_.probes().empty())
     list.push_back(

@@ -53,7 +53,8 @@ inline constexpr std::array<Column<LoadingRow, double>, 6> loading_fields = {{
     {"shear_force_N_per_m", "N/m", "sum of the tangential traction", &LoadingRow::shear_force_N_per_m},
     {"shear_over_normal", "1", "the ratio of the two: the coefficient of friction of the whole interface",
      &LoadingRow::shear_over_normal},
-    {"normal_force_x_m", "m", "where along the interface the normal force acts", &LoadingRow::normal_force_x_m},
+    {"normal_force_x_m", "m", "where along the interface the normal force acts",
+     &LoadingRow::normal_force_x_m},
 }};
 inline constexpr Column<LoadingRow, double> wave_loss = {
     "wave_loss_J_per_m", "J/m", "energy of the waves that were left at the ends of the events so far",

@@ -33,9 +33,9 @@ constexpr const char* state_name = "state";
 constexpr const char* kind_name = "kind";
 
 /// Names that a run's results have.
-constexpr std::array names_of_run = {"case.resolved.toml", "run.json",      "interface.h5", "fronts.csv",
-                                     "fracture.csv",       "static.csv",    "energy.csv",   "fields.vtkhdf",
-                                     "sequence.json",      "events.csv",    "loading.csv"};
+constexpr std::array names_of_run = {"case.resolved.toml", "run.json",   "interface.h5", "fronts.csv",
+                                     "fracture.csv",       "static.csv", "energy.csv",   "fields.vtkhdf",
+                                     "sequence.json",      "events.csv", "loading.csv"};
 
 std::string overwrite_option() {
   return for_caller("--overwrite", "overwrite=True");

@@ -61,7 +61,8 @@ void write_loading(const std::filesystem::path& file, std::span<const record::Lo
   for (const auto& row : rows) {
     text += fmt::format("{},{}", row.n_events, record::name(row.phase));
     for (const auto& column : record::loading_fields) text += fmt::format(",{}", field(row.*column.member));
-    for (const auto& term : record::energy_terms) text += fmt::format(",{}", field(row.energies.*term.member));
+    for (const auto& term : record::energy_terms)
+      text += fmt::format(",{}", field(row.energies.*term.member));
     text += fmt::format(",{},{}\n", field(row.wave_loss_J_per_m),
                         field(record::imbalance_J_per_m(row, rows.front())));
   }

@@ -307,8 +307,8 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
 
 std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes) {
   if (!has_forces(config)) return {};
-  const auto statics = statics_of(config, meshes.plate, meshes.base, ratios_at_rest(config, meshes.mu_s),
-                                  [] { return true; });
+  const auto statics =
+      statics_of(config, meshes.plate, meshes.base, ratios_at_rest(config, meshes.mu_s), [] { return true; });
   const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
   const auto critical = statics.shear_to(1);
   auto common = common_state(config, statics, critical, tributary_m);

@@ -238,8 +238,8 @@ std::string end_of_event(const Result& result) {
       break;
   }
   if (input::is_sequence(config))
-    return fmt::format("at t = {:.4g} s all nodes inside had stuck for time.quiet_s = {:g} s", result.event.time_s,
-                       config.time.quiet_s);
+    return fmt::format("at t = {:.4g} s all nodes inside had stuck for time.quiet_s = {:g} s",
+                       result.event.time_s, config.time.quiet_s);
   return fmt::format(
       "at t = {:.4g} s nothing had moved for time.quiet_s = {:g} s: no slip began, none grew or was faster "
       "than {:.3g} m/s, and no waves were left",

@@ -148,8 +148,9 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 /// sequence.json, events.csv and loading.csv of a sequence so far.
 /// @param end  why it ended, in words; empty before
 void write_sequence(const std::filesystem::path& dir, const input::Case& config,
-                    std::span<const record::SequenceEvent> events, std::span<const record::LoadingRow> loading,
-                    const std::string& end, const Status& status);
+                    std::span<const record::SequenceEvent> events,
+                    std::span<const record::LoadingRow> loading, const std::string& end,
+                    const Status& status);
 
 /// Derived quantities of a case, found without solving anything but the statics of loads given as forces.
 struct Info {

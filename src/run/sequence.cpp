@@ -131,7 +131,8 @@ const InitialState* Sequence::next() {
   initial_.spontaneous = at_least(statics_.shear_to(1 + margin));
   const double end_s = config_.sequence.end_s;
   if (time_s(initial_.spontaneous.shear_m) > end_s) {
-    load_to(LoadingPhase::loaded, statics_.shear_by(std::max(at_rest_.shear_m, end_s * top_speed_m_per_s(config_))));
+    load_to(LoadingPhase::loaded,
+            statics_.shear_by(std::max(at_rest_.shear_m, end_s * top_speed_m_per_s(config_))));
     return nullptr;
   }
   load_to(LoadingPhase::event_begins, initial_.spontaneous);
@@ -141,10 +142,7 @@ const InitialState* Sequence::next() {
 
 void Sequence::take(const Result& result) {
   const auto& event = result.event;
-  if (event.end != motion::EventEnd::quiet)
-    throw UserError(
-        "event {} has not come to rest: {}; choose a later {}, a larger {}, or edges that absorb",
-        events_.size() + 1, end_of_event(result), Key("time.end_s"), Key("material.stiffness_damping_s"));
+  SLIPFRONT_ASSERT(event.end == motion::EventEnd::quiet, "the event has not come to rest");
   const auto begins = loading_.back();
   const auto& row_at_end = event.last_row;
   const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
@@ -225,7 +223,8 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
   e.friction_work_J_per_m = -result.event.energies.back().friction_work;
   e.wave_loss_J_per_m = after.wave_loss_J_per_m - before.wave_loss_J_per_m;
   e.n_fronts = static_cast<double>(result.fronts.size());
-  const auto longest = std::ranges::max_element(result.fronts, {}, [](const auto& f) { return f.points.size(); });
+  const auto longest =
+      std::ranges::max_element(result.fronts, {}, [](const auto& f) { return f.points.size(); });
   if (longest != result.fronts.end()) {
     std::vector<double> speeds;
     for (const auto& point : longest->points) speeds.push_back(point.v_tip_m_per_s);
@@ -241,12 +240,13 @@ void Sequence::serialize(StateArchive& archive) {
   const auto are_finite = [](const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
-  require_possible(!events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n &&
-                       are_finite(held_.u_x_m) && std::isfinite(held_.shear_m) &&
-                       std::ranges::max(held_.contact) <= statics::Contact::open &&
-                       loading_.size() == 1 + 3 * events_.size() &&
-                       std::ranges::all_of(loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::at_rest; }),
-                   "a sequence");
+  require_possible(
+      !events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n && are_finite(held_.u_x_m) &&
+          std::isfinite(held_.shear_m) && std::ranges::max(held_.contact) <= statics::Contact::open &&
+          loading_.size() == 1 + 3 * events_.size() &&
+          std::ranges::all_of(loading_,
+                              [](const LoadingRow& row) { return row.phase <= LoadingPhase::at_rest; }),
+      "a sequence");
   rest();
 }
 

@@ -12,9 +12,9 @@
 
 namespace slipfront::run {
 
-/// A sample that is loaded by static equilibria from one spontaneous event to the next. Where an event has left
-/// its interface, it sticks and has its static strength again: the tractions that it carries there are those
-/// of the equilibrium with the slip so far. The statics are factorised once.
+/// A sample that is loaded by static equilibria from one spontaneous event to the next. Where an event has
+/// left its interface, it sticks and has its static strength again: the tractions that it carries there are
+/// those of the equilibrium with the slip so far. The statics are factorised once.
 class Sequence {
  public:
   /// @param monitor  asked between linear solutions
@@ -26,13 +26,12 @@ class Sequence {
 
   /// Why no event follows, in words; empty where one does.
   std::string end() const;
-  /// Loads the sample to the state in which the next event begins: the first one where t/p inside passes mu_s,
-  /// by loading.critical_margin, or where the last event has left it if it does so there.
+  /// Loads the sample to the state in which the next event begins: the first one where t/p inside passes
+  /// mu_s, by loading.critical_margin, or where the last event has left it if it does so there.
   /// @return null where that is beyond sequence.end_s, to which the sample is loaded then
   /// @throws UserError where no shear does it
   const InitialState* next();
-  /// Finds the equilibrium behind the event that has begun so.
-  /// @throws UserError where it has not come to rest
+  /// Finds the equilibrium behind the event that has begun so, and has come to rest.
   void take(const Result& result);
 
   const std::vector<record::SequenceEvent>& events() const { return events_; }
@@ -56,7 +55,8 @@ class Sequence {
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
   double strain_energy_J_per_m(const statics::Equilibrium& state) const;
   /// With the works so far.
-  record::LoadingRow row(record::LoadingPhase phase, double shear_m, const record::StaticState& tractions) const;
+  record::LoadingRow row(record::LoadingPhase phase, double shear_m,
+                         const record::StaticState& tractions) const;
   void add_event(const Result& result, const record::LoadingRow& before, const record::LoadingRow& after,
                  const record::StaticState& tractions_after);
 

@@ -52,6 +52,7 @@ class SequenceSession {
   Checkpoints checkpoints_;
   CheckpointHead head_;
   std::unique_ptr<Sequence> sequence_;
+  bool began_ = false;  ///< before that a new sequence has nothing to keep
 };
 
 FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed) {
@@ -64,7 +65,8 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
       keep();
       done_(sequence_->events().size(), sequence_->events().back());
     }
-    if (end.empty()) end = fmt::format("no event begins before sequence.end_s = {:g} s", config_.sequence.end_s);
+    if (end.empty())
+      end = fmt::format("no event begins before sequence.end_s = {:g} s", config_.sequence.end_s);
     write_case(folder_.unfinished(), config_);
     write(end, {"complete", "", head_.sessions});
     folder_.publish();
@@ -76,12 +78,10 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
     fail("blew_up", error.what());
     throw;
   } catch (const std::exception& error) {
-    const bool has_events = sequence_ && !sequence_->events().empty();
-    if (resumed || has_events) {
+    if (resumed || began_)
       fail("failed", error.what());
-    } else {
+    else
       folder_.abandon();
-    }
     throw;
   }
 }
@@ -113,11 +113,16 @@ bool SequenceSession::run_event() {
   results::ResultFolder event_folder(event_dir(), event_work, &folder_);
   const auto finished = event_folder.has_unfinished() ? resume(event_folder, nullptr, options_, hooks)
                                                       : run_into(event_folder, config_, options_, hooks);
+  began_ = true;
   const auto& event = finished.result.event;
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
   if (event.end == motion::EventEnd::blow_up)
     throw BlowUp(fmt::format("{}: {}; {}", part, event.reason, what_was_kept(folder_)));
+  if (event.end != motion::EventEnd::quiet)
+    throw UserError("{} has not come to rest: {}; choose a later {}, a larger {}, or edges that absorb; {}",
+                    part, end_of_event(finished.result), Key("time.end_s"),
+                    Key("material.stiffness_damping_s"), what_was_kept(folder_));
   sequence_->take(finished.result);
   return true;
 }

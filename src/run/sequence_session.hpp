@@ -20,9 +20,9 @@ struct FinishedSequence {
 /// Called after each event, with its number from 1.
 using EventDone = std::function<void(std::size_t number, const record::SequenceEvent& event)>;
 
-/// Runs a case that is a sequence into its folder: events.csv, loading.csv, sequence.json, and each event in a
-/// folder of its own, events/0001 and so on, as a run's. What was computed stays in DIR/unfinished until all
-/// of it is published.
+/// Runs a case that is a sequence into its folder: events.csv, loading.csv, sequence.json, and each event in
+/// a folder of its own, events/0001 and so on, as a run's. What was computed stays in DIR/unfinished until
+/// all of it is published.
 /// @throws UserError, also where an event does not come to rest; BlowUp, Interrupted, WriteError as run_into
 FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::Case& config,
                                    const SessionOptions& options, const SessionHooks& hooks,
@@ -32,6 +32,7 @@ FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::C
 /// @param expected  a case that it must be, or null
 /// @throws as resume
 FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
-                                 const SessionOptions& options, const SessionHooks& hooks, const EventDone& done);
+                                 const SessionOptions& options, const SessionHooks& hooks,
+                                 const EventDone& done);
 
 }  // namespace slipfront::run

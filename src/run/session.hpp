@@ -49,9 +49,10 @@ struct Finished {
 /// The kind of work that a run is, see results::ResultFolder.
 inline constexpr const char* run_work = "run";
 
-/// Runs a case of one event into its folder. While it goes, DIR/unfinished has the case, run.json with its status, and
-/// what there is of the results; every now and then a checkpoint is kept there, from which resume goes on. A
-/// run that is complete is published to DIR; one that was interrupted or blew up stays where it is.
+/// Runs a case of one event into its folder. While it goes, DIR/unfinished has the case, run.json with its
+/// status, and what there is of the results; every now and then a checkpoint is kept there, from which resume
+/// goes on. A run that is complete is published to DIR; one that was interrupted or blew up stays where it
+/// is.
 /// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
 /// Interrupted in ramp or statics; WriteError, what there is being kept.
 Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,

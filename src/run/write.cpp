@@ -348,7 +348,8 @@ double largest_imbalance(std::span<const record::LoadingRow> loading) {
   double imbalance = 0, largest = 0;
   for (const auto& row : loading) {
     imbalance = std::max(imbalance, std::abs(record::imbalance_J_per_m(row, loading.front())));
-    for (const auto& term : record::energy_terms) largest = std::max(largest, std::abs(row.energies.*term.member));
+    for (const auto& term : record::energy_terms)
+      largest = std::max(largest, std::abs(row.energies.*term.member));
   }
   return imbalance / largest;
 }
@@ -362,8 +363,9 @@ Json loads_json(const record::LoadingRow& row) {
 }  // namespace
 
 void write_sequence(const std::filesystem::path& dir, const input::Case& config,
-                    std::span<const record::SequenceEvent> events, std::span<const record::LoadingRow> loading,
-                    const std::string& end, const Status& status) {
+                    std::span<const record::SequenceEvent> events,
+                    std::span<const record::LoadingRow> loading, const std::string& end,
+                    const Status& status) {
   results::write_events(dir / "events.csv", events);
   results::write_loading(dir / "loading.csv", loading);
   auto json = about(config, status);

@@ -1,80 +1,248 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/sequence.hpp"
 
-#include <fmt/core.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <memory>
-#include <map>
-#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "cases.hpp"
+#include "results/folder.hpp"
 #include "run/choices.hpp"
+#include "run/sequence_session.hpp"
+#include "sessions.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::run {
 namespace {
 
-/// Takes the motion with which an event ends.
-struct Last final : motion::Observer {
-  explicit Last(motion::Snapshot& to) : snapshot(to) {}
-  void at_end(motion::Pause& pause) override { snapshot = pause.stepper().snapshot(); }
-  motion::Snapshot& snapshot;
-};
+namespace fs = std::filesystem;
+using record::LoadingPhase;
+using record::LoadingRow;
+using test::error_of;
+using test::stopping_at;
+using test::undisturbed;
+using ::testing::HasSubstr;
 
-struct Step {
-  statics::Equilibrium before;
-  Result result;
-  Rest rest;
-};
-
-Step run_next(Sequence& sequence, const input::Case& config) {
-  const auto& initial = sequence.next();
-  motion::Snapshot last;
-  motion::Observers more;
-  more.push_back(std::make_unique<Last>(last));
-  auto result = run_from(config, initial, test::go_on, {}, std::move(more));
-  const double shear_m = initial.spontaneous.shear_m + top_speed_m_per_s(config) * result.event.time_s;
-  return {initial.spontaneous, std::move(result), rest_of(last, initial, shear_m)};
-}
-
-/// The paper's plate, damped so that events come to rest.
-input::Case damped_case() {
-  auto config = test::coarse_case(interface::EventKind::spontaneous);
-  config.material.stiffness_damping_s = 2e-6;
-  config.time.end_s = 20e-3;
-  config.time.interface_substeps = std::getenv("SUB") ? std::atoi(std::getenv("SUB")) : 1; if (std::getenv("END")) config.time.end_s = std::atof(std::getenv("END")); if (std::getenv("BETA")) config.material.stiffness_damping_s = std::atof(std::getenv("BETA"));
-  config.sequence.max_events = 100; if (std::getenv("V")) config.loading.shear_speed_over_c_L = std::atof(std::getenv("V")); config.time.quiet_s = 0.4e-3; if (std::getenv("H")) config.plate.element_size_m = std::atof(std::getenv("H"));if (std::getenv("MUK")) config.friction.parameter("mu_k") = std::atof(std::getenv("MUK"));
+input::Case sequence_case(int max_events, double mu_k = 0.6) {
+  auto config = test::coarse_case();
+  config.sequence.max_events = max_events;
+  config.loading.shear_speed_over_c_L = 1e-9;
+  config.time.quiet_s = 0.45e-3;
+  config.time.end_s = 11e-3;
+  test::law(config).mu_k = mu_k;
   return config;
 }
 
-TEST(Sequence, Explore) {
-  const auto config = damped_case();
+/// Computes the next event. @return the state in which it began
+const InitialState* run_next(Sequence& sequence, const input::Case& config) {
+  const auto* initial = sequence.next();
+  if (initial != nullptr) sequence.take(run_from(config, *initial, test::go_on));
+  return initial;
+}
+
+TEST(Sequence, EnergiesOfAllPhasesBalance) {
+  auto config = sequence_case(6);
+  config.time.interface_substeps =
+      1;  // energies of sub-cycled motion are bounded from below but for coupling
   Sequence sequence(config, test::go_on);
-  const int n = std::getenv("N") ? std::atoi(std::getenv("N")) : 4;
-  for (int event = 0; event < n; ++event) {
-    const auto [before, result, rest] = run_next(sequence, config);
-    const auto f = contact_force(before, mesh::tributary_lengths_m(sequence.mesh()));
-    const auto at_rest = sequence.hold(rest);
-    const auto g = contact_force(at_rest, mesh::tributary_lengths_m(sequence.mesh()));
-    const auto& r = result.event.last_row;
-    double potency = 0, slip_max = 0; int slipped = 0;
-    const auto a = mesh::tributary_lengths_m(sequence.mesh());
-    for (std::size_t k = 0; k < a.size(); ++k) { potency += r.slip_m[k] * a[k]; slip_max = std::max(slip_max, r.slip_m[k]); slipped += r.slip_m[k] != 0; }
-    double from = 1, to = 0;
-    for (const auto& o : result.event.record.onsets) { from = std::min(from, result.event.record.x_m[o.node]); to = std::max(to, result.event.record.x_m[o.node]); }
-    { std::map<int, std::array<int, 8>> late; const auto& rec = result.event.record;
-      for (const auto& o : rec.onsets) late[std::min(10, int(o.time_s / 0.5e-3))][std::min(7, int(rec.x_m[o.node] / 0.025))]++;
-      for (const auto& s : rec.stops) late[100+std::min(10, int(s.time_s / 0.5e-3))][std::min(7, int(rec.x_m[s.node] / 0.025))]++;
-      for (const auto& [t, row] : late) { fmt::print("   {:4} :", t); for (int c : row) fmt::print(" {:4}", c); fmt::print("\n"); }
-      fmt::print("   inside {:.4f} {:.4f} energies", before.inside_from_m, before.inside_to_m);
-      for (std::size_t k = 0; k < result.event.energies.size(); k += 25) { fmt::print(" {:.2g}", result.event.energies[k].kinetic); }
- fmt::print("\n"); }
-    int open=0, slip=0; for (auto c : before.contact) { open += c == statics::Contact::open; slip += c == statics::Contact::slip; }
-    fmt::print("{:2} shear {:.5g} F {:.4f} -> {:.4f} at {:.4f} slip {:.4f}-{:.4f} onsets {} potency {:.3g} max {:.3g} end {} t {:.4g} K {:.3g} open {} slip {} fronts {}\n", event, before.shear_m, f.shear_N_per_m/f.normal_N_per_m, g.shear_N_per_m/g.normal_N_per_m, before.peak_x_m, from, to, result.event.record.n_onsets(), potency, slip_max, static_cast<int>(result.event.end), result.event.time_s, result.event.energies.back().kinetic, open, slip, result.fronts.size());
+  while (sequence.end().empty()) run_next(sequence, config);
+  const auto& rows = sequence.loading();
+  ASSERT_EQ(rows.size(), 1 + 3 * 6);
+  double largest = 0;
+  for (const auto& row : rows)
+    for (const auto& term : record::energy_terms)
+      largest = std::max(largest, std::abs(row.energies.*term.member));
+  for (const auto& row : rows) EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), 1e-11 * largest);
+  for (std::size_t k = 3; k < rows.size(); k += 3) {
+    ASSERT_EQ(rows[k].phase, LoadingPhase::at_rest);
+    // An equilibrium has the least energy of all motions with this interface.
+    EXPECT_GT(rows[k].wave_loss_J_per_m, rows[k - 1].wave_loss_J_per_m);
+    EXPECT_LT(rows[k].energies.strain, rows[k - 2].energies.strain);
+    EXPECT_LT(rows[k].energies.friction_work, rows[k - 2].energies.friction_work);
+    EXPECT_LT(rows[k].shear_over_normal, rows[k - 2].shear_over_normal);
   }
+}
+
+TEST(Sequence, EquilibriumCarriesTheTractionsWithWhichADampedEventComesToRest) {
+  auto config = sequence_case(2);
+  config.material.stiffness_damping_s = 4e-6;
+  config.time.end_s = 40e-3;
+  double off_before = infinity;
+  for (const double quiet_s : {2e-3, 8e-3}) {
+    config.time.quiet_s = quiet_s;
+    Sequence sequence(config, test::go_on);
+    const auto* initial = sequence.next();
+    const auto result = run_from(config, *initial, test::go_on);
+    sequence.take(result);
+    const auto& ends = sequence.loading()[2];
+    const auto& rests = sequence.loading()[3];
+    const double off = std::abs(ends.shear_force_N_per_m / rests.shear_force_N_per_m - 1);
+    EXPECT_LT(off, 0.2 * off_before);  // waves fade away
+    off_before = off;
+  }
+  EXPECT_LT(off_before, 1e-3);
+}
+
+TEST(Sequence, EventsBeginWhereInsideOneNodeReachesTheStrengthAndTheOthersStick) {
+  const auto config = sequence_case(12, 1.0);
+  Sequence sequence(config, test::go_on);
+  while (sequence.end().empty()) {
+    const auto* initial = sequence.next();
+    ASSERT_NE(initial, nullptr);
+    const auto& state = initial->spontaneous;
+    EXPECT_NEAR(state.peak_ratio, 1.3 * 1.001, 1e-6);
+    for (std::size_t k = 0; k < state.contact.size(); ++k) {
+      if (!state.is_inside(state.tractions.x_m[k])) continue;
+      EXPECT_EQ(state.contact[k], statics::Contact::stick) << k;
+    }
+    sequence.take(run_from(config, *initial, test::go_on));
+  }
+}
+
+TEST(Sequence, EndsByGlobalSliding) {
+  auto config = sequence_case(20);
+  config.sequence.to_global_sliding = true;
+  Sequence sequence(config, test::go_on);
+  while (sequence.end().empty()) run_next(sequence, config);
+  const auto& events = sequence.events();
+  ASSERT_LT(events.size(), 20U);
+  EXPECT_EQ(events.back().is_global, 1);
+  for (std::size_t k = 0; k + 1 < events.size(); ++k) EXPECT_EQ(events[k].is_global, 0);
+  EXPECT_THAT(sequence.end(), HasSubstr("all nodes inside have slipped"));
+}
+
+TEST(Sequence, LoadsToTheTimeAtWhichItEnds) {
+  auto config = sequence_case(20);
+  Sequence unlimited(config, test::go_on);
+  run_next(unlimited, config);
+  unlimited.next();
+  const double second_s = unlimited.loading().back().time_s;
+  config.sequence.end_s = second_s - 1;
+  Sequence sequence(config, test::go_on);
+  EXPECT_NE(run_next(sequence, config), nullptr);
+  EXPECT_EQ(run_next(sequence, config), nullptr);
+  const auto& last = sequence.loading().back();
+  EXPECT_EQ(last.phase, LoadingPhase::loaded);
+  EXPECT_DOUBLE_EQ(last.time_s, second_s - 1);
+  EXPECT_LT(std::abs(imbalance_J_per_m(last, sequence.loading().front())), 1e-11 * last.energies.strain);
+}
+
+TEST(Sequence, RowsOfEventsTellWhatSlipped) {
+  const auto config = sequence_case(4, 1.0);
+  Sequence sequence(config, test::go_on);
+  while (sequence.end().empty()) {
+    const auto* initial = sequence.next();
+    const auto result = run_from(config, *initial, test::go_on);
+    sequence.take(result);
+    const auto& e = sequence.events().back();
+    const auto& before = sequence.loading().end()[-3];
+    const auto& after = sequence.loading().back();
+    std::set<std::int32_t> nodes;
+    for (const auto& onset : result.event.record.onsets) nodes.insert(onset.node);
+    double potency_m2 = 0, length_m = 0;
+    for (const auto node : nodes) {
+      const double a = initial->tributary_m[node];
+      potency_m2 += result.event.last_row.slip_m[node] * a;
+      length_m += a;
+    }
+    EXPECT_NEAR(e.potency_m2, potency_m2, 1e-12 * potency_m2);
+    EXPECT_NEAR(e.length_m, length_m, 1e-12 * length_m);
+    EXPECT_EQ(e.from_x_m, result.event.record.x_m[*nodes.begin()]);
+    EXPECT_EQ(e.to_x_m, result.event.record.x_m[*nodes.rbegin()]);
+    EXPECT_TRUE(initial->common.is_inside(e.begin_x_m));
+    EXPECT_EQ(e.friction_before, before.shear_force_N_per_m / before.normal_force_N_per_m);
+    EXPECT_EQ(e.friction_after, after.shear_force_N_per_m / after.normal_force_N_per_m);
+    EXPECT_NEAR(e.begin_s, e.shear_m / top_speed_m_per_s(config), 1e-12 * e.begin_s);
+    EXPECT_GT(e.stress_drop_Pa, 0);
+  }
+}
+
+// In folders.
+
+FinishedSequence start_sequence(
+    const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed,
+    const EventDone& done = [](std::size_t, const record::SequenceEvent&) {}) {
+  results::ResultFolder folder(dir, run_work);
+  SessionOptions options;
+  options.threads = 1;
+  return run_sequence_into(folder, config, options, hooks, done);
+}
+
+FinishedSequence resume_sequence_in(const fs::path& dir, const SessionHooks& hooks = undisturbed) {
+  results::ResultFolder folder(dir, run_work);
+  SessionOptions options;
+  options.threads = 1;
+  return resume_sequence(folder, nullptr, options, hooks, [](std::size_t, const record::SequenceEvent&) {});
+}
+
+/// The files of all events and of the loading, which do not depend on when they were written.
+std::map<std::string, std::string> tables_in(const fs::path& dir) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(dir)) {
+    const auto ending = entry.path().extension();
+    if (ending == ".csv" || ending == ".h5" || ending == ".toml")
+      files[fs::relative(entry.path(), dir).string()] = test::read_file(entry.path());
+  }
+  return files;
+}
+
+TEST(SequenceInAFolder, IsTheSameWhereverItWasStopped) {
+  const test::TemporaryFolder folder;
+  const auto config = sequence_case(3);
+  start_sequence(folder / "whole", config);
+  const auto expected = tables_in(folder / "whole");
+  ASSERT_EQ(expected.size(), 3 + 3 * 6U);
+  for (const auto& [part, step] : {std::pair{"event 1", 1}, {"event 1", 200}, {"event 3", 150}}) {
+    const auto dir = folder / fmt::format("stopped in {} at {}", part, step);
+    EXPECT_THROW(start_sequence(dir, config, stopping_at(part, step)), Interrupted);
+    EXPECT_FALSE(is_complete(dir));
+    resume_sequence_in(dir);
+    EXPECT_TRUE(is_complete(dir));
+    EXPECT_EQ(tables_in(dir), expected) << part << " at " << step;
+  }
+}
+
+TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
+  const test::TemporaryFolder folder;
+  const auto config = sequence_case(3);
+  start_sequence(folder / "whole", config);
+  bool stop = false;
+  const SessionHooks hooks{[](const char*, std::int64_t, std::int64_t) {},
+                           [&] { return stop ? Request::stop : Request::none; }, [](const std::string&) {}};
+  const auto dir = folder / "stopped";
+  EXPECT_THROW(start_sequence(dir, config, hooks,
+                              [&](std::size_t number, const record::SequenceEvent&) { stop = number == 2; }),
+               Interrupted);
+  stop = false;
+  resume_sequence_in(dir);
+  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+}
+
+TEST(SequenceInAFolder, AnEventThatDoesNotComeToRestIsRefusedAndKept) {
+  const test::TemporaryFolder folder;
+  auto config = sequence_case(12);
+  config.time.end_s = 0.5e-3;
+  const auto dir = folder / "out";
+  EXPECT_THAT(error_of([&] { start_sequence(dir, config); }),
+              HasSubstr("event 1 has not come to rest: time.end_s = 0.0005 s was reached"));
+  const auto info = nlohmann::json::parse(test::read_file(dir / "unfinished" / sequence_file));
+  EXPECT_EQ(info["status"], "failed");
+  EXPECT_EQ(info["events"], 0);
+  EXPECT_TRUE(fs::exists(dir / "unfinished" / "events" / "0001" / "interface.h5"));
+}
+
+TEST(SequenceInAFolder, AnEventIsGoneOnWithAsPartOfItsSequenceAlone) {
+  const test::TemporaryFolder folder;
+  const auto dir = folder / "out";
+  EXPECT_THROW(start_sequence(dir, sequence_case(2), stopping_at("event 1", 100)), Interrupted);
+  const auto event_dir = dir / "unfinished" / "events" / "0001";
+  EXPECT_THAT(error_of([&] { results::ResultFolder held(event_dir, run_work); }),
+              HasSubstr("another run keeps"));
 }
 
 }  // namespace

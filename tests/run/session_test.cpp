@@ -15,6 +15,7 @@
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/velocity_weakening.hpp"
 #include "run/checkpoint.hpp"
+#include "sessions.hpp"
 #include "support/files.hpp"
 #include "support/interruption.hpp"
 
@@ -25,6 +26,8 @@ namespace fs = std::filesystem;
 using test::coarse_case;
 using test::error_of;
 using test::prestressed_case;
+using test::stopping_at;
+using test::undisturbed;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -49,17 +52,6 @@ void expect_same(const std::map<std::string, std::string>& files,
   for (const auto& [name, bytes] : expected)
     EXPECT_TRUE(files.contains(name) && files.at(name) == bytes) << name;
 }
-
-/// Stops at the given step of a part; never where that is negative.
-SessionHooks stopping_at(const std::string& part, std::int64_t stop_at) {
-  auto stop = std::make_shared<bool>(false);
-  return {[=](const char* now, std::int64_t step, std::int64_t) {
-            *stop = stop_at >= 0 && now == part && step >= stop_at;
-          },
-          [=] { return *stop ? Request::stop : Request::none; }, [](const std::string&) {}};
-}
-
-const SessionHooks undisturbed = stopping_at("", -1);
 
 SessionOptions with_threads(int threads) {
   SessionOptions options;

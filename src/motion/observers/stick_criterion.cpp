@@ -33,9 +33,9 @@ std::optional<End> StickCriterion::end(Pause& pause) {
 }
 
 void StickCriterion::restored(Pause& pause) {
-  require_possible(is_slipping_.size() == is_within_.size() && since_s_ >= 0 &&
-                       since_s_ <= pause.now().time_s(),
-                   "times of slip");
+  require_possible(
+      is_slipping_.size() == is_within_.size() && since_s_ >= 0 && since_s_ <= pause.now().time_s(),
+      "times of slip");
   n_slipping_ = std::ranges::count(is_slipping_, 1);
 }
 
