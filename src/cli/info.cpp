@@ -66,6 +66,9 @@ void add_steps(const input::Case& config, const run::Info& info, Listing& list) 
                          info.substeps_of_bodies.front(), info.substeps_of_bodies.back(),
                          std::lcm(info.substeps_of_bodies.front(), info.substeps_of_bodies.back())));
   list.add("steps to the end", fmt::format("{}", info.n_steps));
+  if (input::is_sequence(config))
+    list.add("sequence", fmt::format("at most {} events; steps, disk and time are those of one to time.end_s",
+                                     config.sequence.max_events));
   if (info.needs.ramp_steps > 0)
     list.add("steps of the ramp before",
              fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));

@@ -162,11 +162,8 @@ class ContactProblem {
         if (excess > tolerance * p_max && may_slip(k))
           changes.push_back({k, Contact::slip, t > 0 ? 1.0 : -1.0, excess / p_max});
       } else {
-        // Where it may not slip any more it did so in a guess: the edge that it was near to has moved.
-        const bool has_to_stick = !may_slip(k);
         const double backward = -slip_sign[k] * (u_x_m(k, shear) - anchor_x_m[k]);
-        if (backward > tolerance * u_scale || has_to_stick)
-          changes.push_back({k, Contact::stick, 0, has_to_stick ? 1.0 : backward / u_scale});
+        if (backward > tolerance * u_scale) changes.push_back({k, Contact::stick, 0, backward / u_scale});
       }
     }
     if (one_only && changes.size() > 1)
@@ -179,11 +176,26 @@ class ContactProblem {
     return !changes.empty();
   }
 
+  /// Lets nodes stick that slip where they may not, each once. Returns whether there were any.
+  template <class MaySlip>
+  bool stick_again(MaySlip&& may_slip) {
+    bool any = false;
+    stuck_again_.resize(n_);
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (contact[k] != Contact::slip || may_slip(k) || stuck_again_[k]) continue;
+      contact[k] = Contact::stick;
+      states.support.slip_sign[k] = 0;
+      any = stuck_again_[k] = true;
+    }
+    return any;
+  }
+
   const InterfaceNodes nodes;
   ContactStates states;
   std::vector<Contact>& contact;
 
  private:
+  std::vector<bool> stuck_again_;
   LoadCase& plate_;
   std::size_t n_;
 };
@@ -451,7 +463,7 @@ void Statics::press_down(double compliance_m_per_Pa) {
 Statics::~Statics() = default;
 
 template <class FindShear>
-Equilibrium Statics::shear(FindShear&& find_shear) const {
+Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
   Inside inside{};
   const auto settle_problem = [&](ContactProblem& problem, double accuracy, double final) {
     return settle(
@@ -461,6 +473,9 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
           return find_shear(problem, inside);
         },
         [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); }, may_continue_);
+  };
+  const auto is_outside = [&](std::size_t k) {
+    return !inside.contains(mesh_.x_m[mesh_.interface_nodes[k]]);
   };
   Settled settled;
   if (last_) {
@@ -476,7 +491,10 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     settled = settle_on_levels(mesh_, base_mesh_, *solver_, sticking(held_contact_, held_u_x_m_, mu_s_),
                                make_case, settle_problem, *sheared_);
   }
-  const auto& [problem, shear] = settled;
+  auto& [problem, shear] = settled;
+  // A guess of the shear that was too large leaves slip where the edge of contact has moved away from.
+  while (sticks_inside && problem->stick_again(is_outside))
+    shear = settle_problem(*problem, final_accuracy, final_accuracy);
   if (solver_->iterates()) last_ = problem->states;
 
   Equilibrium e = make_equilibrium(*problem, shear, loading_.edge_margin_m);
@@ -498,7 +516,7 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
 }
 
 Equilibrium Statics::shear_by(double shear_m) const {
-  return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; });
+  return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; }, false);
 }
 
 Equilibrium Statics::shear_to_force(double force_N_per_m) const {
@@ -516,7 +534,7 @@ Equilibrium Statics::shear_to_force(double force_N_per_m) const {
     const double found = problem.shear_at(&ContactProblem::t_Pa, force_N_per_m);
     reached = std::isfinite(found);
     return reached ? found : 0.0;
-  });
+  }, false);
   if (!reached)
     throw UserError("{}: no shear gives a force of {:.6g} N/m; reduce it, or raise {}", key, force_N_per_m,
                     Key(mu_s_key_));
@@ -555,7 +573,7 @@ Equilibrium Statics::shear_to(double share) const {
     }
     reached = std::isfinite(shear);
     return reached ? shear : 0.0;
-  });
+  }, true);
   if (!reached)
     throw UserError("no shear brings t/p inside the interface to {}; reduce {}, or change the tilt or {}",
                     name_of_ratio(share), Key(mu_s_key_), Key("loading.edge_margin_m"));

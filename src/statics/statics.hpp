@@ -124,8 +124,9 @@ class Statics {
   /// Tilts the plate.
   /// @param compliance_m_per_Pa  about: displacement of the loaded edge over the mean pressure
   void press_down(double compliance_m_per_Pa);
+  /// @param sticks_inside  slip there is none, but of a guess
   template <class FindShear>
-  Equilibrium shear(FindShear&& find_shear) const;
+  Equilibrium shear(FindShear&& find_shear, bool sticks_inside) const;
   /// The share of mu_s where `state` has its peak.
   double ratio_at_peak(const Equilibrium& state, double share) const;
   /// That in messages; a number where mu_s is uniform.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/schema.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,6 +20,7 @@ namespace slipfront::input {
 namespace {
 
 using test::error_of;
+using ::testing::HasSubstr;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -26,7 +28,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // which reminds of its entry in the schema.
 template <int n, class Struct>
 auto members(const Struct& s) {
-  if constexpr (n == 4) {
+  if constexpr (n == 3) {
+    const auto& [a, b, c] = s;
+    return std::tuple(a, b, c);
+  } else if constexpr (n == 4) {
     const auto& [a, b, c, d] = s;
     return std::tuple(a, b, c, d);
   } else if constexpr (n == 5) {
@@ -80,11 +85,12 @@ auto members(const interface::FrictionLaw& friction) {
 }
 auto members(const Case& c) {
   const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, tip,
-               regularisation, contact, event, trigger, nucleation, time, fronts, output, probes] = c;
+               regularisation, contact, event, trigger, nucleation, sequence, time, fronts, output, probes] =
+      c;
   return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x), tip,
                     members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
-                    members<9>(time), members<7>(fronts), members<5>(output), members<4>(probes));
+                    members<3>(sequence), members<9>(time), members<7>(fronts), members<5>(output), members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
@@ -231,6 +237,33 @@ TEST(Schema, RoundedCornersReadBackFromToml) {
   fillet.plate.corner = mesh::Corner::fillet;
   fillet.plate.fillet_radius_m = 3e-3;
   for (const Case& c : {relief, fillet}) expect_equal(parsed(to_toml(c)), c);
+}
+
+TEST(Schema, SequencesReadBackFromToml) {
+  Case sequence;
+  sequence.loading.shear_speed_over_c_L = 1e-8;
+  sequence.time.end_s = 1e-2;
+  sequence.time.quiet_s = 1e-3;
+  sequence.sequence = {7, 400, true};
+  expect_equal(parsed(to_toml(sequence)), sequence);
+}
+
+TEST(Schema, DefaultsOfASequenceLetEventsComeToRestBeforeTheEdgeMovesOn) {
+  const Case single = parsed(""), sequence = parsed("sequence.max_events = 2");
+  EXPECT_EQ(sequence.loading.shear_speed_over_c_L, 1e-9);
+  EXPECT_DOUBLE_EQ(sequence.time.end_s, 10 * single.time.end_s);
+  EXPECT_DOUBLE_EQ(sequence.time.quiet_s,
+                   4 * single.plate.height_m / solid::shear_speed_m_per_s(single.material));
+  EXPECT_EQ(parsed("time.quiet_s = 2e-4\nsequence.max_events = 2").time.quiet_s, 2e-4);
+}
+
+TEST(Schema, SequencesNeedEventsThatBeginAndEndByThemselves) {
+  const std::string begin = "sequence.max_events = 2\n";
+  EXPECT_THAT(error_of(begin + "event.kind = 'left'"), HasSubstr("event.kind = spontaneous"));
+  EXPECT_THAT(error_of(begin + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
+  EXPECT_THAT(error_of(begin + "time.quiet_s = inf"), HasSubstr("each event comes to rest"));
+  EXPECT_THAT(error_of(begin + "output.history_interval_s = 1e-3"), HasSubstr("at most half"));
+  EXPECT_THAT(error_of("sequence.end_s = 2"), HasSubstr("sequence.max_events > 1"));
 }
 
 TEST(Schema, ForcesReadBackFromToml) {

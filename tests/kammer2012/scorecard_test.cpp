@@ -32,7 +32,7 @@ Claim claim_of(const Reproduction& runs, const std::string& id) {
 
 std::set<std::string> paper_claims() {
   std::set<std::string> ids;
-  for (int k = 1; k <= 23; ++k) ids.insert(fmt::format("C{}", k));
+  for (int k = 1; k <= 24; ++k) ids.insert(fmt::format("C{}", k));
   return ids;
 }
 
@@ -267,6 +267,10 @@ const Variant variants[] = {
      [](auto& r) {
        for (auto& p : r.left.fronts[0].points)
          p.v_tip_m_per_s = std::min(p.v_tip_m_per_s, 0.99 * r.left.speeds.c_S);
+     }},
+    {"C24", "global friction near the local one",
+     [](auto& r) {
+       r.loaded_on[1].largest_friction = 1.2;
      }},
 };
 

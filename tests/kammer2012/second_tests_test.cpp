@@ -77,14 +77,14 @@ TEST(SecondTests, SummaryCountsWithAndWithoutThem) {
   using testing::AllOf, testing::HasSubstr;
   auto runs = make_good();
   EXPECT_THAT(summary(scorecard(runs)),
-              AllOf(HasSubstr("21 hold, 0 do not, 0 not tested, 2 used to choose"),
-                    HasSubstr("first tests alone 22 hold, 0 do not, 0 not tested, 1 used")));
+              AllOf(HasSubstr("22 hold, 0 do not, 0 not tested, 2 used to choose"),
+                    HasSubstr("first tests alone 23 hold, 0 do not, 0 not tested, 1 used")));
   runs.studies[0] = make_mu_k_study({0.9, 0.6, 0.7, 0.3, 0.2});  // C20 alone falls
   runs.studies.pop_back();                                       // of C22
   runs.triggers = {{10, 0}};                                     // C11b alone falls
   EXPECT_THAT(summary(scorecard(runs)),
-              AllOf(HasSubstr("20 hold, 1 do not, 1 not tested, 1 used to choose"),
-                    HasSubstr("first tests alone 20 hold, 1 do not, 1 not tested, 1 used")));
+              AllOf(HasSubstr("21 hold, 1 do not, 1 not tested, 1 used to choose"),
+                    HasSubstr("first tests alone 21 hold, 1 do not, 1 not tested, 1 used")));
 }
 
 TEST(SecondTests, WhatWasUsedToChooseConfirmsNothing) {

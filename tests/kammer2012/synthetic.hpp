@@ -222,6 +222,7 @@ inline Reproduction make_good() {
   r.spontaneous_mu_k_1.fronts = {make_front(peak_x_m, 0.115, linear(0.8, 1.0), c_L),
                                  make_front(peak_x_m, 0.194, linear(0.6, 0.75), c_L)};
   r.studies = {make_mu_k_study({0.9, 0.8, 0.6, 0.5, 0.3}), make_alpha_study({0, 0.02, 0.05}, 2)};
+  r.loaded_on = {{1.3, 0.6, 0.8, 1}, {1.3, 1.0, 1.1, 9}};
   return r;
 }
 
