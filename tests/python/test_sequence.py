@@ -11,7 +11,7 @@ import shutil
 import numpy as np
 import pytest
 import slipfront
-from common import require_done, require_same_bytes
+from common import refusal, require_done, require_same_bytes
 from package_cases import program, write_case
 from refusals import flip, replace
 from report_pages import data_of, page_of
@@ -108,6 +108,12 @@ def test_a_law_in_python_is_of_one_event():
         slipfront.CaseError, match="sequence.max_events is 4; a law in Python is of one event"
     ):
         slipfront.run_with_law(SEQUENCE, lambda rate, slip: np.full_like(slip, 1.3))
+
+
+@pytest.mark.parametrize("study", ["convergence", "interface-step"])
+def test_a_study_is_of_one_event(study, tmp_path):
+    found = program("study", study, write_case(tmp_path, SEQUENCE), "-o", "out", cwd=tmp_path)
+    assert "sequence.max_events is 4; a study is of one event" in refusal(found)
 
 
 # Opened
