@@ -251,11 +251,16 @@ def test_the_page_holds_each_event(folder, tmp_path):
         assert part in text
 
 
-def test_the_page_of_a_long_record_leaves_nodes_out(folder, tmp_path, monkeypatch):
-    monkeypatch.setattr("slipfront.report.sequence.MOST_NODES", 20)
+def test_what_the_page_leaves_out_is_told(folder, tmp_path, monkeypatch):
+    for name, most in (("MOST_NODES", 20), ("MOST_CURVES", 2), ("MOST_ROWS", 3)):
+        monkeypatch.setattr(f"slipfront.report.sequence.{name}", most)
     text = page_of(folder, tmp_path / "page.html")
-    x = data_of(text)["sequence"]["slip"]["x"]
-    assert "20 of 51 nodes are drawn." in text and len(x) == 20 and (x[0], x[-1]) == (0, 200)
+    slip = data_of(text)["sequence"]["slip"]
+    assert "2 of 4 events are drawn. 20 of 51 nodes are drawn." in text
+    assert "The first 3 of 4 events." in text and len(re.findall(r"<tr><td>\d+</td>", text)) == 3
+    assert len(slip["x"]) == 20 and (slip["x"][0], slip["x"][-1]) == (0, 200) and slip["events"] == [1, 4]
+    last = 1e6 * slipfront.open(folder).slip.sum("event")
+    np.testing.assert_allclose(slip["after"][1][::19], last[::50], rtol=1e-4)
 
 
 def test_the_page_of_a_sequence_that_is_not_over(interrupted):

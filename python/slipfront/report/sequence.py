@@ -21,6 +21,7 @@ from slipfront.report.page import Page, facts_table, plot, section, warnings_lis
 from slipfront.report.run import MOST_NODES, MOST_TIMES, navigation, program_words, sessions_words, thin_run
 from slipfront.report.run_data import evenly
 from slipfront.report.sketch import sketch
+from slipfront.report.study import MOST_ROWS
 from slipfront.units import quantity, unit_of
 
 is_kind = is_sequence  # of the folders of `slipfront report`
@@ -32,6 +33,7 @@ PLACES = [
     ("slips", "Slip"),
     ("events", "Events"),
 ]
+MOST_CURVES = 60  # of slip, each after an event
 COLOURS, LIGHTEST = "viridis", 0.9  # from the first event to the last
 PHASES = {
     "tilted": "before any shear",
@@ -108,7 +110,7 @@ def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
     events, slip = sequence.events, sequence.slip
     static = sequence.loading.isel(row=(sequence.loading["phase"] != "slip_ends").to_numpy())
     after = np.cumsum(slip.to_numpy(), axis=0)
-    nodes = evenly(slip.sizes["x_m"], MOST_NODES)
+    nodes, curves = evenly(slip.sizes["x_m"], MOST_NODES), evenly(len(after), MOST_CURVES)
     units = {
         "x": unit("length", slip["x_m"]),
         "time": unit("time", static["time_s"]),
@@ -132,14 +134,20 @@ def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
         "events": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
         "slip": {
             "x": listed(slip["x_m"][nodes], units["x"].factor),
-            "after": [listed(row, units["slip"].factor) for row in after[:, nodes]],
+            "events": [1 + k for k in curves],
+            "after": [listed(row, units["slip"].factor) for row in after[np.ix_(curves, nodes)]],
         },
     }
 
 
+def thinning(data: dict[str, Any], n_nodes: int) -> str:
+    """What of the slip the page does not have."""
+    slip = data["slip"]
+    counts = ((len(slip["events"]), len(data["events"]), "events"), (len(slip["x"]), n_nodes, "nodes"))
+    return "".join(f" {shown} of {n} {name} are drawn." for shown, n, name in counts if shown < n)
+
+
 def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
-    n_shown = len(data["slip"]["x"])
-    thinned = f" {n_shown} of {n_nodes} nodes are drawn." if n_shown < n_nodes else ""
     return [
         section(
             "forces",
@@ -160,15 +168,18 @@ def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
             "Slip",
             plot("slips-plot", "Slip along the interface after each event"),
             "<p>Slip since the tilt, after each event: the sum of what the records end with. Dark: the "
-            f"first event, light: the last.{thinned}</p>",
+            f"first event, light: the last.{thinning(data, n_nodes)}</p>",
         ),
     ]
 
 
 def events_section(place: Place, sequence: OpenSequence) -> str:
     events = sequence.events
-    if events.sizes["event"] == 0:
+    n_events = events.sizes["event"]
+    if n_events == 0:
         return section("events", "Events", "<p>None is complete.</p>")
+    events = events.isel(event=slice(MOST_ROWS))
+    left_out = f"<p>The first {MOST_ROWS} of {n_events} events.</p>" if n_events > MOST_ROWS else ""
     units = {
         "length": unit("length", [events[name].max() for name in ("to_x_m", "length_m")]),
         "slip": unit("slip", events["max_slip_m"]),
@@ -204,6 +215,7 @@ def events_section(place: Place, sequence: OpenSequence) -> str:
     return section(
         "events",
         "Events",
+        left_out,
         table(header, [list(row) for row in zip(numbers, *cells, strict=True)], kind="dense"),
         "<p>Speed: the median of the longest front. All columns: events.csv, docs/files.md. A page of one "
         f"event: <code>slipfront report {example}</code>.</p>",

@@ -20,30 +20,33 @@ function drawForces({units, loading, events}) {
   return Plotly.react('forces-plot', traces, layout, CONFIG);
 }
 
-/** Where an event slips, at a place of one of the two panels. */
-function extent(event, x, panel, width, unit) {
-  return {type: 'scatter', mode: 'lines', x: [x, x], y: [event.from, event.to], xaxis: `x${panel}`, yaxis: 'y', showlegend: false,
-    line: {color: event.colour, width}, meta: {event: event.number}, name: eventWords(event),
-    hovertemplate: `${eventWords(event)}: x = ${shown(event.from)} to ${shown(event.to)} ${unit}<extra></extra>`};
+/** Where the events slip, in one of the two panels: bars of a width in units of its axis. */
+function extents(events, x, panel, width, unit) {
+  return {type: 'bar', x: events.map(x), y: events.map(({from, to}) => to - from), base: events.map(({from}) => from), width,
+    xaxis: `x${panel}`, yaxis: 'y', showlegend: false, marker: {color: events.map(({colour}) => colour), line: {width: 0}}, meta: {panel},
+    hovertext: events.map((event) => `${eventWords(event)}: x = ${shown(event.from)} to ${shown(event.to)} ${unit}`),
+    hovertemplate: '%{hovertext}<extra></extra>'};
 }
 
 function drawExtents({units, slip, events}) {
-  const width = Math.max(2, Math.min(12, 300 / events.length));
+  const ratios = events.map((event) => event.before);
+  const spread = most(ratios, 1) + most(ratios.map((ratio) => -ratio), 0);
+  const panels = [['', (e) => e.before, 0.015 * spread || 0.01], ['2', (e) => e.number, 0.4]];
   const begins = (x, panel) => ({...eventMarks('slip begins', events, x, (e) => e.begin, 'diamond', 'begins'), xaxis: `x${panel}`, yaxis: 'y',
     marker: {symbol: 'diamond', size: 8, color: '#fff', line: {color: '#111', width: 1}}, showlegend: panel === '',
     hovertemplate: `%{text} at x = %{y:.4g} ${units.x}<extra></extra>`});
-  const panels = [['', (e) => e.before], ['2', (e) => e.number]];
-  const traces = panels.flatMap(([panel, x]) => [...events.map((e) => extent(e, x(e), panel, width, units.x)), begins(x, panel)]);
+  const traces = panels.flatMap(([panel, x, width]) => [extents(events, x, panel, width, units.x), begins(x, panel)]);
   const layout = layoutWith({
     xaxis: axis(`${forceRatio} where the event begins`, {domain: [0, 0.48], anchor: 'y'}),
     xaxis2: axis('event', {domain: [0.52, 1], anchor: 'y', range: [0.5, events.length + 0.5], tickformat: 'd'}),
-    yaxis: axis(`x (${units.x})`, {range: [slip.x[0], slip.x.at(-1)]}), hovermode: 'closest', legend: {x: 1.02, y: 1},
+    yaxis: axis(`x (${units.x})`, {range: [slip.x[0], slip.x.at(-1)]}), barmode: 'overlay', hovermode: 'closest', legend: {x: 1.02, y: 1},
   });
   return Plotly.react('extents-plot', traces, layout, CONFIG);
 }
 
 function drawSlips({units, slip, events}) {
-  const traces = events.map((event, k) => ({type: 'scatter', mode: 'lines', name: `after ${eventWords(event)}`, x: slip.x, y: slip.after[k],
+  const drawn = slip.events.map((number) => events[number - 1]);
+  const traces = drawn.map((event, k) => ({type: 'scatter', mode: 'lines', name: `after ${eventWords(event)}`, x: slip.x, y: slip.after[k],
     line: {color: event.colour, width: 1.5}, meta: {event: event.number},
     hovertemplate: `after ${eventWords(event)}: %{y:.4g} ${units.slip} at x = %{x:.4g} ${units.x}<extra></extra>`}));
   const layout = layoutWith({xaxis: axis(`x (${units.x})`, {range: [slip.x[0], slip.x.at(-1)]}), yaxis: axis(`slip so far (${units.slip})`, {rangemode: 'tozero'}),
