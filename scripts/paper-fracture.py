@@ -51,6 +51,7 @@ def main_front(event: str, size_m: float, case: Path, folder: Path) -> MainFront
     result = slipfront.run(
         case, {"plate.element_size_m": size_m, "output.snapshot_times_s": []}, output=folder, progress=False
     )
+    assert isinstance(result, slipfront.OpenRun)
     ids, counts = np.unique(result.fracture.front_id, return_counts=True)
     is_main = result.fracture.front_id == ids[counts.argmax()]
     points, fronts = (data.isel(point=is_main.to_numpy()) for data in (result.fracture, result.fronts))

@@ -53,7 +53,8 @@ if TYPE_CHECKING:
     from slipfront.measures import spread_at_equal_x as spread_at_equal_x
     from slipfront.onsets import read_onsets as read_onsets
     from slipfront.opened import OpenRun as OpenRun
-    from slipfront.opened import open as open
+    from slipfront.opened_sequence import OpenSequence as OpenSequence
+    from slipfront.opened_sequence import open as open
     from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
     from slipfront.other_codes import read_sem2dpack as read_sem2dpack
     from slipfront.other_codes import read_uguca as read_uguca
@@ -109,7 +110,8 @@ _PLACES = {
     "spread_at_equal_x": "measures",
     "read_onsets": "onsets",
     "OpenRun": "opened",
-    "open": "opened",
+    "OpenSequence": "opened_sequence",
+    "open": "opened_sequence",
     "read_seissol_fault_receivers": "other_codes",
     "read_sem2dpack": "other_codes",
     "read_uguca": "other_codes",

@@ -371,7 +371,7 @@ def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Call
 
 def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
     """
-    Goes on with the unfinished run of a folder; does nothing where it is complete.
+    Goes on with the unfinished run or sequence of a folder; does nothing where it is complete.
     """
 
 class Mesh:

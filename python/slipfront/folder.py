@@ -2,7 +2,8 @@
 """A folder of results: where its files are, and whether they are those that the program wrote.
 
 checksums.sha256 lists every file of a finished set with its SHA-256, as sha256sum does. publishing/ holds the
-files of such a set that have not been moved to their place, unfinished/ a run that has not come to its end.
+files of such a set that have not been moved to their place, unfinished/ a run or a sequence of events that
+has not come to its end.
 """
 
 from __future__ import annotations
@@ -22,9 +23,10 @@ from slipfront.files import DataError, exists, is_folder, open_file, read_text
 LIST = "checksums.sha256"
 PUBLISHING = "publishing"
 UNFINISHED = "unfinished"
+RUN, SEQUENCE = "run.json", "sequence.json"  # what tells of one
 RUN_FILES = (
     "run.json", "case.resolved.toml", "static.csv", "fronts.csv", "fracture.csv", "energy.csv",
-    "interface.h5", "fields.vtkhdf", "probes.h5",
+    "interface.h5", "fields.vtkhdf", "probes.h5", "sequence.json", "events.csv", "loading.csv",
 )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
 from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, gauges_of, read_gauges
 from slipfront.opened import OpenRun
-from slipfront.opened import open as open_run
+from slipfront.read import read_place
 from slipfront.tip_fit import TipFit, fit_tips
 
 MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
@@ -229,13 +229,13 @@ def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def work(options: argparse.Namespace) -> list[str]:
-    run = open_run(options.records) if is_folder(options.records) else None
+    run = OpenRun(read_place(options.records)) if is_folder(options.records) else None
     if run is None and options.stress:
         raise DataError("--stress is of a run; a record holds what its columns say: leave it out")
     read = read_gauges(options.records) if run is None else gauges_of(run, stress=options.stress)
     gauges, notes = prepared(read, options)
     if options.compare is not None:
-        beside = open_run(options.compare)
+        beside = OpenRun(read_place(options.compare))
         found = compare_gauges(gauges, beside, within_s=options.within_s)
         lines, rows = lines_of_comparison(found), rows_of_comparison(found)
     else:

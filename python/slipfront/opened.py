@@ -20,7 +20,6 @@ from xarray.core import indexing
 
 from slipfront.files import DataError, Table, dataset, open_hdf5, read_table, read_toml
 from slipfront.folder import belongs, result_file
-from slipfront.given import path
 from slipfront.read import (
     BLEW_UP,
     HISTORY_FIELDS,
@@ -30,7 +29,6 @@ from slipfront.read import (
     open_history,
     read_fields,
     read_fronts,
-    read_place,
     read_probes,
     read_static,
     require,
@@ -113,6 +111,15 @@ def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr
     return variables
 
 
+def read_case(folder: Path) -> dict[str, Any]:
+    """Every key of the case of results; tables that it names by their whole paths."""
+    case = read_toml(result_file(folder / "case.resolved.toml"))
+    for table in case.values():
+        if isinstance(table, dict) and table.get("file"):
+            table["file"] = str(folder.absolute() / table["file"])
+    return case
+
+
 class OpenRun:
     """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
     what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
@@ -145,11 +152,7 @@ class OpenRun:
     def case(self) -> dict[str, Any]:
         """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
         are the copies of the run, by their whole paths."""
-        case = read_toml(result_file(self.folder / "case.resolved.toml"))
-        for table in case.values():
-            if isinstance(table, dict) and table.get("file"):
-                table["file"] = str(self.folder.absolute() / table["file"])
-        return case
+        return read_case(self.folder)
 
     @cached_property
     def tractions(self) -> xr.Dataset:
@@ -366,9 +369,3 @@ class OpenRun:
             "x_m": self.tractions["x_m"].variable,
         }
         return xr.Dataset(variables, coordinates, self._attributes())
-
-
-def open(folder: str | os.PathLike[str]) -> OpenRun:
-    """Opens the results of a run, whoever has made them; where there is an unfinished run and
-    no complete one, that. Raises DataError where there is none."""
-    return OpenRun(read_place(path(folder, "folder")))

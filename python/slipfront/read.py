@@ -29,7 +29,7 @@ from slipfront.files import (
     read_table,
     read_toml,
 )
-from slipfront.folder import LIST, UNFINISHED, belongs, result_file, verify_checksums
+from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, belongs, result_file, verify_checksums
 
 STATIC_COLUMNS = ("x_m", "t_s_Pa", "p_s_Pa")
 FRONT_COLUMNS = (
@@ -196,10 +196,11 @@ class Balance:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a run's results are and how it ended. `info` is run.json as a dictionary."""
+    """Where the results of a run or a sequence are and how it ended. `info` is run.json or sequence.json as a
+    dictionary."""
 
     name: str
-    folder: Path  # the run's own, or its unfinished/
+    folder: Path  # its own, or its unfinished/
     info: dict[str, Any]
     status: str  # one of STATUSES
     reason: str  # may be empty
@@ -551,17 +552,26 @@ def read_balance(file: Path, growing: bool = False, blew_up: bool = False) -> Ba
     )
 
 
-def read_place(folder: Path) -> Place:
-    """The complete results in a run's folder or, where there are none, those in its unfinished/."""
+def is_sequence(folder: Path) -> bool:
+    """Whether the results that read_place takes from a folder are those of a sequence of events."""
+    place = folder if belongs(folder / RUN) or belongs(folder / SEQUENCE) else folder / UNFINISHED
+    return belongs(place / SEQUENCE)
+
+
+def read_place(folder: Path, told: str = RUN) -> Place:
+    """The complete results in the folder of a run or, where there are none, those in its unfinished/. `told`:
+    the file that tells of them, which a sequence has another of."""
     if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; name the output folder of a run")
+    if told == RUN and is_sequence(folder):
+        raise DataError(f"{folder}: is of a sequence of events; name the folder of one of them, in events/")
     place, notes = folder, []
     if is_folder(folder / UNFINISHED):
-        if belongs(folder / "run.json"):
+        if belongs(folder / told):
             notes = [f"{folder / UNFINISHED}: another run, not finished: the figures show the complete one"]
         else:
             place = folder / UNFINISHED
-    file = place / "run.json"
+    file = place / told
     info = read_json_table(result_file(file))
     status = info.get("status", OLD_ENDS.get(str(info.get("end")), "complete"))
     reason = info.get("reason", "")

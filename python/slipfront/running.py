@@ -21,11 +21,12 @@ from slipfront import _core
 from slipfront.errors import BlowUpError, CaseError, WriteError
 from slipfront.given import array, flag, number, path, shown, table, text, whole
 from slipfront.opened import Kept, OpenRun
+from slipfront.opened_sequence import OpenSequence, opened
 from slipfront.read import read_place
 
 # A path, the text of a case file, or its tables as dictionaries.
 CaseLike = str | os.PathLike[str] | Mapping[str, Any]
-# Called at times with the part ("ramp" or "event"), the steps done and their total.
+# Called at times with the part ("ramp", "event"; "event 1", ... of a sequence), steps done and their total.
 Progress = Callable[[str, int, int], None]
 # An interval of simulated time, s, and a function that is shown the interface at it.
 Observer = tuple[float, Callable[[_core.InterfaceState], str | None]]
@@ -175,8 +176,9 @@ def run(
     progress: bool | Progress = True,
     observers: Iterable[Observer] = (),
     **tables: Any,
-) -> OpenRun:
-    """Runs a case: statics, event, fronts. The results are those of `slipfront run`, bit for bit.
+) -> OpenRun | OpenSequence:
+    """Runs a case: statics, event, fronts; or a sequence of events. The results are those of `slipfront run`,
+    bit for bit.
 
     case: path of a case file, text of one (of more than one line), or a dictionary of its tables.
     changes, tables: keys to set as with --set, {"friction.mu_k": 0.8} or friction={"mu_k": 0.8}; SI units.
@@ -186,12 +188,12 @@ def run(
     overwrite: replace results that the folder already holds.
     threads: of this run; the results do not depend on them.
     checkpoint_every_s: wall time between checkpoints, s.
-    progress: a bar on terminals and in notebooks, or a function that is called with part ("ramp" or "event"),
-    steps done and their total; what it raises ends the run.
+    progress: a bar on terminals and in notebooks, or a function that is called with part ("ramp", "event", of
+    a sequence "event 1", ...), steps done and their total; what it raises ends the run.
     observers: pairs of an interval of simulated time, s, and a function. It is called between steps of the
-    event with an `InterfaceState`: of time 0, and of the first step at or after each multiple of the
-    interval. A text that it returns ends the event, as the reason. What it raises ends the run; a checkpoint
-    is kept, and `resume` goes on behind the state that was shown last.
+    event, or of each, with an `InterfaceState`: of time 0, and of the first step at or after each multiple of
+    the interval. A text that it returns ends the event, as the reason. What it raises ends the run; a
+    checkpoint is kept, and `resume` goes on behind the state that was shown last.
 
     Other Python threads go on meanwhile. Ctrl-C ends the run within a few steps with a KeyboardInterrupt; its
     checkpoint is kept, and `resume` goes on from there.
@@ -212,11 +214,11 @@ def run(
     if output is not None:
         folder = path(output, "output")
         work(folder)
-        return OpenRun(read_place(folder))
+        return opened(folder)
     folder = temporary_folder()
     try:
         work(folder)
-        return OpenRun(read_place(folder), Kept(folder))
+        return opened(folder, Kept(folder))
     except (KeyboardInterrupt, BlowUpError):
         raise  # the message names the folder
     except BaseException:
@@ -231,8 +233,9 @@ def resume(
     checkpoint_every_s: float = CHECKPOINT_EVERY_S,
     progress: bool | Progress = True,
     observers: Iterable[Observer] = (),
-) -> OpenRun:
-    """Goes on with a run that was left unfinished in a folder, as if it had never stopped: bit for bit.
+) -> OpenRun | OpenSequence:
+    """Goes on with a run or a sequence that was left unfinished in a folder, as if it had never stopped: bit
+    for bit.
 
     observers: those of `run`, or others.
 
@@ -241,7 +244,7 @@ def resume(
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
     called = observers_of(observers)
     compute(lambda show: _core.resume(folder, n_threads, every_s, show, called), progress)
-    return OpenRun(read_place(folder))
+    return opened(folder)
 
 
 def run_with_law(

@@ -20,6 +20,7 @@ ENDINGS = {
     "_m_per_s": "m/s",
     "_per_s": "1/s",
     "_bytes": "bytes",
+    "_m2": "m2",
     "_Pa": "Pa",
     "_s": "s",
     "_m": "m",
@@ -27,7 +28,7 @@ ENDINGS = {
 SYMBOLS = ("mu_s", "mu_k", "d_c", "l_star")  # their underscores are subscripts
 PREFIXED = ("m", "s", "Pa", "N/m")
 PREFIXES = {"G": 1e-9, "M": 1e-6, "k": 1e-3, "": 1.0, "m": 1e3, "µ": 1e6, "n": 1e9}
-WRITTEN = {"kg/m3": "kg/m³", "m2/s2": "m²/s²", "J/m3": "J/m³", "J/m2": "J/m²"}
+WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "m2/s2": "m²/s²", "J/m3": "J/m³", "J/m2": "J/m²"}
 WRITTEN |= {"J m-1": "J/m", "J m-2": "J/m²"}  # of NetCDF
 
 #: What columns of tables and arrays hold.

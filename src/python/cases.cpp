@@ -27,6 +27,7 @@
 #include "run/choices.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
+#include "run/sequence_session.hpp"
 #include "run/session.hpp"
 #include "solid/operator.hpp"
 #include "stability/rupture.hpp"
@@ -77,13 +78,14 @@ struct Session {
     options.observers = observers_of(observers, watcher);
   }
 
+  /// @param work  returns a run's end, which may be another than its own; nothing of a sequence
   template <class Work>
   void complete(const Work& work) {
     try {
       const nb::gil_scoped_release unlocked;
-      const run::Finished finished = work();
+      const std::optional<run::Finished> finished = work();
       watcher.rethrow();
-      run::require_came_to_end(finished.result, folder);
+      if (finished) run::require_came_to_end(finished->result, folder);
     } catch (const Interrupted&) {
       watcher.rethrow();
       throw;
@@ -94,6 +96,8 @@ struct Session {
   }
 };
 
+void show_no_event(std::size_t /*number*/, const record::SequenceEvent& /*event*/) {}
+
 /// @param config  the case that was given, or that with another friction law
 void run_config(const input::CaseFile& given, const input::Case& config, const fs::path& dir, bool overwrite,
                 std::optional<int> threads, double checkpoint_every_s, nb::object progress,
@@ -101,9 +105,12 @@ void run_config(const input::CaseFile& given, const input::Case& config, const f
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   session.folder.require_empty(overwrite);
   session.complete([&] {
-    return given.placing_errors([&] {
+    return given.placing_errors([&]() -> std::optional<run::Finished> {
       run::require_fit(config, session.folder.dir());
-      return run::run_into(session.folder, config, session.options, session.watcher.hooks());
+      const auto hooks = session.watcher.hooks();
+      if (!input::is_sequence(config)) return run::run_into(session.folder, config, session.options, hooks);
+      run::run_sequence_into(session.folder, config, session.options, hooks, show_no_event);
+      return {};
     });
   });
 }
@@ -161,6 +168,9 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
                 const std::optional<nb::callable>& evolve, nb::object progress) {
   input::Case config = given.config();
   const Key law("friction.law");
+  if (input::is_sequence(config))
+    throw UserError("{} is {}; a law in Python is of one event: set it to 1", Key("sequence.max_events"),
+                    config.sequence.max_events);
   if (evolve && !config.friction.has_state())
     throw UserError("evolve needs a law with a state, which {} = {} is not", law, config.friction.name());
   if (!evolve && config.friction.has_state())
@@ -177,8 +187,13 @@ void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_e
             const Functions& observers) {
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
-  session.complete(
-      [&] { return run::resume(session.folder, nullptr, session.options, session.watcher.hooks()); });
+  session.complete([&]() -> std::optional<run::Finished> {
+    const auto hooks = session.watcher.hooks();
+    if (!input::is_sequence(run::unfinished_case(session.folder, nullptr)))
+      return run::resume(session.folder, nullptr, session.options, hooks);
+    run::resume_sequence(session.folder, nullptr, session.options, hooks, show_no_event);
+    return {};
+  });
 }
 
 stability::WellPosedness well_posedness(const input::CaseFile& given, double pressure_Pa,
@@ -357,7 +372,7 @@ void bind_cases(nb::module_& module) {
       "the list of states after a time.");
   module.def("resume", &resume, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
              "observers"_a,
-             "Goes on with the unfinished run of a folder; does nothing where it is complete.");
+             "Goes on with the unfinished run or sequence of a folder; does nothing where it is complete.");
 }
 
 }  // namespace slipfront::python

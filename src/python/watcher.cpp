@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "python/watcher.hpp"
 
-#include <string>
 #include <utility>
 
 #include "base/interruption.hpp"
@@ -53,7 +52,7 @@ void Watcher::ask_python() {
   asked_ = Clock::now();
   in_python([this] {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    if (part_ != nullptr && !progress_.is_none()) progress_(part_, step_, total_);
+    if (!part_.empty() && !progress_.is_none()) progress_(part_.c_str(), step_, total_);
   });
 }
 

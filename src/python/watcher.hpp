@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <string>
 
 #include "base/clock.hpp"
 #include "run/session.hpp"
@@ -37,7 +38,7 @@ class Watcher {
 
   Watcher* outer_;  ///< of a run that calls Python, which begins this one
   nanobind::object progress_;
-  const char* part_ = nullptr;  ///< "ramp" or "event", of static storage
+  std::string part_;  ///< empty before the first
   std::int64_t step_ = 0, total_ = 0;
   Clock::time_point asked_ = {};
   bool stopped_ = false;

@@ -253,7 +253,7 @@ void ResultFolder::make(const ResultFolder* within) {
                     dir_.empty() ? "no name" : "the root of all folders");
   // Its own end would take what another process keeps in it.
   for (fs::path p = fs::absolute(dir_, error); p.has_relative_path(); p = p.parent_path()) {
-    if (within != nullptr && p == within->unfinished()) break;
+    if (within != nullptr && p == fs::absolute(within->unfinished(), error)) break;
     const auto name = p.filename();
     if ((name == unfinished().filename() || name == publishing().filename()) && has_own_state(p))
       throw UserError(

@@ -24,6 +24,11 @@ CASES = {
 }
 
 
+SEQUENCE = [
+    "papers/kammer2012/spontaneous.toml",
+    *sets("plate.element_size_m=4e-3", "fronts.l_star_m=4e-3", "time.end_s=20e-3", "sequence.max_events=3"),
+]
+PLOTS = {"sequence": ("forces", "extents", "slips")}  # of other pages those of a run
 SWEPT = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "event.trigger_zone_m=0.02,0.03"]
 
 
@@ -42,10 +47,11 @@ FRONTS = f"{data('criteria')}.filter(t => t.meta?.front !== undefined)"
 
 @pytest.fixture(scope="session")
 def pages(tmp_path_factory):
-    """Pages of a run on a rigid plane, of one of two bodies, and of a reproduction."""
+    """Pages of a run on a rigid plane, of one of two bodies, of a reproduction, a sweep and a sequence."""
     folder = tmp_path_factory.mktemp("pages")
     commands = {name: ["run", *case, "--quiet"] for name, case in CASES.items()}
     commands["reproduction"] = ["reproduce", "--quick"]
+    commands["sequence"] = ["run", *SEQUENCE, "--quiet"]
     commands["sweep"] = ["sweep", *CASES["probes"], *SWEPT, "--quiet"]
     found = {}
     for name, command in commands.items():
@@ -114,7 +120,7 @@ def change(browser, control, value, event):
     browser.execute_script(f"{element} s.dispatchEvent(new Event('{event}'))")
 
 
-@pytest.mark.parametrize("name", [*CASES, "reproduction"])
+@pytest.mark.parametrize("name", [*CASES, "reproduction", "sequence"])
 def test_a_page_draws_without_errors_and_without_a_network(opened, name):
     browser = opened(name)
     assert browser.get_log("browser") == []
@@ -124,7 +130,7 @@ def test_a_page_draws_without_errors_and_without_a_network(opened, name):
         if "Network.requestWillBeSent" in entry["message"]
     ]
     assert not any('"url":"http' in message for message in requests)
-    for plot in ("space-time", "profiles", "criteria", "energy", "snapshots"):
+    for plot in PLOTS.get(name, ("space-time", "profiles", "criteria", "energy", "snapshots")):
         drawn = browser.find_elements(By.CSS_SELECTOR, f"#{plot}-plot .main-svg")
         assert drawn, plot
     assert browser.execute_script("return document.documentElement.scrollWidth") <= 1366

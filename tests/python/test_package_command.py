@@ -169,6 +169,7 @@ def test_the_page_runs(tmp_path, monkeypatch, capsys):
         exec(block, names)
     assert names["run"].case["friction"]["mu_k"] == 0.8
     assert names["run"].history.slip_m.attrs["units"] == "m"
+    assert len(names["sequence"].runs) == 3
     assert list(names["found"].direction.values) == [-1, 1]
     assert np.nanmax(np.abs(names["found"].v_tip_m_per_s - 900)) < 1e-6
     assert names["fit"].n_points > 4

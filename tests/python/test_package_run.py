@@ -541,6 +541,14 @@ f_w = 0.1
 V_w_m_per_s = 0.2
 tip_slip_rate_m_per_s = 0.05
 """,
+    "sequence": """
+plate.element_size_m = 4e-3
+event.kind = "spontaneous"
+[sequence]
+max_events = 3
+end_s = 500.0
+to_global_sliding = true
+""",
 }
 
 

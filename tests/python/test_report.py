@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import base64
-import json
 import re
 import sys
 from pathlib import Path
@@ -16,6 +15,7 @@ import pytest
 import slipfront
 from package_cases import write_case
 from refusals import change_json, flip, one_line
+from report_pages import data_of, page_of
 from slipfront import __main__ as package
 from slipfront.read import PROBE_FIELDS, Fields, read_balance
 from slipfront.report import history, picture_grid, run_data
@@ -27,7 +27,13 @@ from synthetic import write_checksums, write_output, write_run
 from synthetic_study import write_interface_step, write_open_choices, write_study
 
 PROBE_PARTS = {"probes-plot", "probes-change"}  # of the page of a run with probes alone
-OTHER_PARTS = PROBE_PARTS | {"data", "run", "criteria-more", "fracture-plot"}  # that a page may lack
+OTHER_PARTS = PROBE_PARTS | {
+    "data",
+    "run",
+    "criteria-more",
+    "fracture-plot",
+    "forces-plot",
+}  # that a page may lack
 HOSTILE = '</script><script>alert(1)</script><b>"&\u202e'
 
 
@@ -35,17 +41,6 @@ HOSTILE = '</script><script>alert(1)</script><b>"&\u202e'
 def run(tmp_path):
     write_run(tmp_path / "left", "left", 0.6, 20, 10, 30, 3)
     return tmp_path / "left"
-
-
-def page_of(folder: Path, file: Path | None = None) -> str:
-    """The page of a folder, without the library in it."""
-    assert main([str(folder), *(["-o", str(file)] if file else [])]) == 0
-    text = (file or folder / "report.html").read_text(encoding="utf-8")
-    return re.sub(r"<script>[\s\S]*?</script>", "<script></script>", text)
-
-
-def data_of(text: str) -> dict:
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text)[1])
 
 
 def unpacked(field: dict) -> np.ndarray:

@@ -13,12 +13,12 @@ from slipfront.figures.drawing import guarded
 from slipfront.figures.style import RC
 from slipfront.files import DataError, exists, is_folder
 from slipfront.folder import LIST, read_list
-from slipfront.report import reproduction, run, study
+from slipfront.report import reproduction, run, sequence, study
 from slipfront.report.page import require_replaceable, write_page
 from slipfront.sweep import report as sweep
 
 #: Kinds of folders, the first that is one of them makes the page: is_kind(folder), page(folder, file).
-KINDS: tuple[ModuleType, ...] = (reproduction, study, sweep, run)
+KINDS: tuple[ModuleType, ...] = (reproduction, study, sweep, sequence, run)
 DEFAULT_NAME = "report.html"
 
 
@@ -29,7 +29,9 @@ def write_report(folder: Path, file: Path) -> list[str]:
     require_replaceable(file)
     kind = next((kind for kind in KINDS if kind.is_kind(folder)), None)
     if kind is None:
-        raise DataError(f"{folder}: holds no results of a run, a study, a sweep or a reproduction")
+        raise DataError(
+            f"{folder}: holds no results of a run, a sequence, a study, a sweep or a reproduction"
+        )
     with matplotlib.rc_context(RC):
         page = guarded(folder, lambda: kind.page(folder, file))
     notes = write_page(page, file)

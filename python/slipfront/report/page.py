@@ -27,6 +27,7 @@ SCRIPTS = (
     "energy.js",
     "snapshots.js",
     "probes.js",
+    "sequence.js",
     "page.js",
 )
 #: The browser itself refuses whatever would come from a network.

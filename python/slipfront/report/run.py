@@ -70,12 +70,22 @@ def ending(run: Run) -> str:
     return "complete: " + words(ENDS.get(end, end) or "why it ended is not given")
 
 
+def sessions_words(info: dict[str, Any]) -> str:
+    n = info.get("sessions")
+    return f", in {n} parts" if isinstance(n, int) and n > 1 else ""
+
+
+def program_words(info: dict[str, Any]) -> str:
+    return words(
+        f"slipfront {info.get('version')}, commit {info.get('commit')}, {info.get('compiler')}, "
+        f"on {info.get('host')}"
+    )
+
+
 def facts(run: Run) -> str:
     info, steps = run.info, number_words(run.info.get("steps"), ",.0f")
     step = number_words(info.get("dt_s"), ".3g", 1e6, " µs")
     interface_step = number_words(info.get("interface_dt_s"), ".3g", 1e6, " µs")
-    n_sessions = info.get("sessions")
-    sessions = f", in {n_sessions} parts" if isinstance(n_sessions, int) and n_sessions > 1 else ""
     return facts_table(
         [
             ("Folder", words(run.name)),
@@ -83,9 +93,8 @@ def facts(run: Run) -> str:
             ("Mesh", mesh_words(run)),
             ("Time", f"{number_words(info.get('time_s'), '.4g', 1e6, ' µs')} in {steps} steps of {step}; "
                      f"{interface_step} at the interface"),
-            ("Computed in", number_words(info.get("wall_s"), ".3g", 1, " s") + sessions),
-            ("Program", words(f"slipfront {info.get('version')}, commit {info.get('commit')}, "
-                              f"{info.get('compiler')}, on {info.get('host')}")),
+            ("Computed in", number_words(info.get("wall_s"), ".3g", 1, " s") + sessions_words(info)),
+            ("Program", program_words(info)),
         ]
     )  # fmt: skip
 

@@ -79,5 +79,5 @@ function axis(title, more) {
 const xAxis = (run, more) => axis(`x (${run.units.x})`, more);
 const triangle = (direction) => (direction > 0 ? 'triangle-right' : 'triangle-left');
 
-/** The run that the page shows now, of those it has. */
+/** The run that the page shows now, of those it has; none on the page of a sequence. */
 let current = data.runs[0];

@@ -15,7 +15,8 @@ function startRuns() {
 
 async function start() {
   startRuns();
-  await Promise.all([startSpaceTime(), startProfiles(), startCriteria(), startFracture(), drawEnergy(), startSnapshots(), startProbes()]);
+  await Promise.all([startSpaceTime(), startProfiles(), startCriteria(), startFracture(), drawEnergy(), startSnapshots(), startProbes(),
+    startSequence()]);
   document.body.dataset.drawn = 'all';
 }
 

@@ -94,6 +94,7 @@ function resetProfiles() {
 }
 
 function startProfiles() {
+  if (!byId('profiles-plot')) return null;
   byId('profiles-time').addEventListener('input', (event) => showProfile(Number(event.target.value)));
   byId('profiles-keep').addEventListener('click', () => { kept = [...new Set([...kept, profileIndex])]; drawProfiles(); });
   byId('profiles-clear').addEventListener('click', () => { kept = []; drawProfiles(); });

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A sequence of slip events as xarray's data sets, and each of its events as a run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from copy import deepcopy
+from functools import cached_property
+from pathlib import Path
+from typing import Any, overload
+
+import numpy as np
+import xarray as xr
+
+from slipfront.files import DataError, Table, read_table
+from slipfront.folder import LIST, SEQUENCE, problem, read_list, result_file
+from slipfront.given import path
+from slipfront.opened import Kept, OpenRun, read_case, table_variables
+from slipfront.read import Place, is_sequence, read_place, require
+from slipfront.units import attributes
+
+# Words for the columns of events.csv and loading.csv that mean something else there, or are theirs alone.
+EVENT_NAMES = {
+    "event": "number of the event",
+    "begin_s": "time since the tilt at which the event begins",
+    "shear_m": "displacement of the top edge to +x when it begins",
+    "begin_x_m": "where slip begins inside",
+    "from_x_m": "left end of what slips",
+    "to_x_m": "right end of what slips",
+    "length_m": "length of the interface that slips",
+    "is_global": "1 where all nodes inside slip",
+    "potency_m2": "slip at rest, summed over the interface",
+    "mean_slip_m": "potency over the length",
+    "max_slip_m": "largest slip at rest",
+    "normal_force_N_per_m": "normal force where the event begins",
+    "shear_force_N_per_m": "shear force where the event begins",
+    "friction_before": "shear over normal force where the event begins",
+    "friction_after": "shear over normal force at rest",
+    "stress_drop_Pa": "tangential traction before less that at rest, mean over what slips",
+    "released_J_per_m": "strain energy before less that at rest",
+    "friction_work_J_per_m": "energy that friction takes",
+    "breakdown_work_J_per_m": "energy that friction takes above the residual traction",
+    "wave_loss_J_per_m": "energy of the waves left at the end of the event",
+    "slip_s": "time from the first beginning of slip to its last end",
+    "n_fronts": "fronts found",
+    "median_speed_m_per_s": "median speed of the longest front",
+}
+LOADING_NAMES = {
+    "event": "number of events that have begun",
+    "phase": "where the loading stands",
+    "time_s": "time since the tilt",
+    "shear_m": "displacement of the top edge to +x since the tilt",
+    "normal_force_N_per_m": "sum of the pressure over the interface",
+    "shear_force_N_per_m": "sum of the tangential traction",
+    "shear_over_normal": "shear over normal force",
+    "normal_force_x_m": "where along the interface the normal force acts",
+    "wave_loss_J_per_m": "energy of the waves that were left at the ends of the events so far",
+}
+
+
+def named(variables: dict[str, xr.Variable], names: dict[str, str]) -> dict[str, xr.Variable]:
+    """The same with other words."""
+    for name, variable in variables.items():
+        if name in names:
+            variable.attrs = attributes(name, long_name=names[name])
+    return variables
+
+
+def numbers_of_events(table: Table) -> np.ndarray:
+    """Column `event`, integers. [rows]"""
+    numbers = table.numbers("event")
+    whole = np.isfinite(numbers) & (numbers >= 0) & (numbers == np.round(numbers))
+    require(whole, table.file, "a value of column 'event' is no number of events")
+    return numbers.astype(np.int64)
+
+
+class Runs(Sequence[OpenRun]):
+    """The events of a sequence as runs, each opened when it is asked for."""
+
+    def __init__(self, place: Place, n_events: int, kept: Kept | None) -> None:
+        self._place, self._n_events, self._kept = place, n_events, kept
+
+    def __len__(self) -> int:
+        return self._n_events
+
+    @overload
+    def __getitem__(self, index: int) -> OpenRun: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[OpenRun]: ...
+    def __getitem__(self, index: int | slice) -> OpenRun | list[OpenRun]:
+        at = range(self._n_events)[index]
+        return self._open(at + 1) if isinstance(at, int) else [self._open(k + 1) for k in at]
+
+    def __repr__(self) -> str:
+        return f"<{self._n_events} runs: {self._place.folder / 'events'}>"
+
+    def _open(self, number: int) -> OpenRun:
+        """Refuses the folder of another sequence: the whole one's list has the checksum of each event's."""
+        folder, name = self._place.folder, f"events/{number:04}"
+        sums = read_list(folder)
+        if sums is not None:
+            of_event = f"{name}/{LIST}"
+            require(of_event in sums, folder / name, f"not in {LIST}: not of this sequence")
+            wrong = problem(folder, of_event, sums[of_event])
+            if wrong is not None:
+                raise DataError(wrong)
+        return OpenRun(read_place(folder / name), self._kept)
+
+
+class OpenSequence:
+    """The results of a sequence of slip events. Undefined numbers are NaN; a file is read, and compared with
+    its checksum, when what it holds is first asked for. Raises DataError where a file is missing, damaged or
+    of another sequence."""
+
+    def __init__(self, place: Place, kept: Kept | None = None) -> None:
+        self._place = place
+        self._kept = kept
+
+    def __repr__(self) -> str:
+        title = self.case.get("title") or self._place.name
+        n = self._place.info.get("events", 0)
+        return f"<slipfront sequence '{title}', {n} events, {self.status}: {self.folder}>"
+
+    @property
+    def folder(self) -> Path:
+        """Where the files are: the sequence's folder, or its unfinished/."""
+        return self._place.folder
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """sequence.json: version, end, wave speeds, number of events, largest friction, last state, imbalance
+        of energy."""
+        return deepcopy(self._place.info)
+
+    @property
+    def status(self) -> str:
+        """How the sequence ended: complete, interrupted, blew_up, failed, or running."""
+        return self._place.status
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
+        are the copies of the sequence, by their whole paths."""
+        return read_case(self.folder)
+
+    @cached_property
+    def events(self) -> xr.Dataset:
+        """events.csv over `event`, from 1: when, where and under which loads each begins, extent, slip,
+        forces, energies, fronts. Those that have come to rest."""
+        table = self._table("events.csv")
+        numbers = numbers_of_events(table)
+        ascend = np.array_equal(numbers, np.arange(1, len(numbers) + 1))
+        require(ascend, table.file, "its events are not numbered from 1")
+        variables = named(table_variables(table, "event"), EVENT_NAMES)
+        variables["event"] = xr.Variable(("event",), numbers, variables["event"].attrs)
+        return xr.Dataset(variables, attrs=self._attributes())
+
+    @cached_property
+    def loading(self) -> xr.Dataset:
+        """loading.csv over `row`: forces and energies of the tilted sample, and where each event begins, ends
+        to slip and is at rest. `phase`: tilted, event_begins, slip_ends, at_rest, loaded; `event`: the number
+        of those that have begun."""
+        table = self._table("loading.csv")
+        variables = table_variables(table, "row")
+        variables["event"] = xr.Variable(("row",), numbers_of_events(table))
+        variables["phase"] = xr.Variable(("row",), np.array(table.texts("phase"), dtype=np.str_))
+        return xr.Dataset(named(variables, LOADING_NAMES), attrs=self._attributes())
+
+    @property
+    def runs(self) -> Sequence[OpenRun]:
+        """The runs of `events`, in order; runs[0] is that of event 1. An event under way is none of them."""
+        return Runs(self._place, self.events.sizes["event"], self._kept)
+
+    @cached_property
+    def slip(self) -> xr.DataArray:
+        """Slip of each event when it is over, over `event` and x_m: the last row of its history."""
+        rows = [run.history["slip_m"].isel(time_s=-1, drop=True).load() for run in self.runs]
+        for run, row in zip(self.runs, rows, strict=True):
+            same = np.array_equal(row["x_m"], rows[0]["x_m"])
+            require(same, run.folder / "interface.h5", "its nodes are not those of the first event")
+        if not rows:
+            empty = np.empty((0, 0))
+            return xr.DataArray(empty, {"event": [], "x_m": []}, ("event", "x_m"), "slip_m")
+        found = xr.concat(rows, self.events["event"])
+        found.attrs = attributes("slip_m", long_name="slip of the event")
+        return found
+
+    def _attributes(self) -> dict[str, str]:
+        return {"title": str(self.case.get("title", "")), "status": self.status, "folder": str(self.folder)}
+
+    def _table(self, name: str) -> Table:
+        return read_table(result_file(self.folder / name))
+
+
+def opened(folder: Path, kept: Kept | None = None) -> OpenRun | OpenSequence:
+    """By what the folder holds."""
+    if is_sequence(folder):
+        return OpenSequence(read_place(folder, SEQUENCE), kept)
+    return OpenRun(read_place(folder), kept)
+
+
+def open(folder: str | os.PathLike[str]) -> OpenRun | OpenSequence:
+    """Opens the results of a run or a sequence, whoever has made them; where there are unfinished ones and
+    no complete ones, those. Raises DataError where there are none."""
+    return opened(path(folder, "folder"))

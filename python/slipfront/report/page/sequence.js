@@ -1,0 +1,61 @@
+// Loads, extents and slip of a sequence of events.
+
+const eventWords = (event) => `event ${event.number}`;
+const forceRatio = 'F<sub>S</sub> / F<sub>N</sub>';
+
+/** Markers of the events, filled as their colour. */
+function eventMarks(name, events, x, y, symbol, told) {
+  return {type: 'scatter', mode: 'markers', name, x: events.map(x), y: events.map(y), text: events.map((event) => `${eventWords(event)} ${told}`),
+    marker: {symbol, size: 9, color: events.map(({colour}) => colour), line: {color: '#111', width: 1}}, cliponaxis: false,
+    hovertemplate: '%{text}: %{y:.4f} at %{x:.5g}<extra></extra>'};
+}
+
+function drawForces({units, loading, events}) {
+  const line = {type: 'scatter', mode: 'lines', name: 'static equilibria', x: loading.time, y: loading.ratio, hoverinfo: 'skip',
+    line: {color: '#555', width: 1.5}};
+  const traces = [line, eventMarks('event begins', events, (e) => e.time, (e) => e.before, 'circle', 'begins'),
+    eventMarks('at rest', events, (e) => e.time, (e) => e.after, 'circle-open', 'at rest')];
+  const layout = layoutWith({xaxis: axis(`t since the tilt (${units.time})`), yaxis: axis(forceRatio, {rangemode: 'tozero'}),
+    hovermode: 'closest', legend: {x: 1.02, y: 1}});
+  return Plotly.react('forces-plot', traces, layout, CONFIG);
+}
+
+/** Where the events slip, in one of the two panels: bars of a width in units of its axis. */
+function extents(events, x, panel, width, unit) {
+  return {type: 'bar', x: events.map(x), y: events.map(({from, to}) => to - from), base: events.map(({from}) => from), width,
+    xaxis: `x${panel}`, yaxis: 'y', showlegend: false, marker: {color: events.map(({colour}) => colour), line: {width: 0}}, meta: {panel},
+    hovertext: events.map((event) => `${eventWords(event)}: x = ${shown(event.from)} to ${shown(event.to)} ${unit}`),
+    hovertemplate: '%{hovertext}<extra></extra>'};
+}
+
+function drawExtents({units, slip, events}) {
+  const ratios = events.map((event) => event.before);
+  const spread = most(ratios, 1) + most(ratios.map((ratio) => -ratio), 0);
+  const panels = [['', (e) => e.before, 0.015 * spread || 0.01], ['2', (e) => e.number, 0.4]];
+  const begins = (x, panel) => ({...eventMarks('slip begins', events, x, (e) => e.begin, 'diamond', 'begins'), xaxis: `x${panel}`, yaxis: 'y',
+    marker: {symbol: 'diamond', size: 8, color: '#fff', line: {color: '#111', width: 1}}, showlegend: panel === '',
+    hovertemplate: `%{text} at x = %{y:.4g} ${units.x}<extra></extra>`});
+  const traces = panels.flatMap(([panel, x, width]) => [extents(events, x, panel, width, units.x), begins(x, panel)]);
+  const layout = layoutWith({
+    xaxis: axis(`${forceRatio} where the event begins`, {domain: [0, 0.48], anchor: 'y'}),
+    xaxis2: axis('event', {domain: [0.52, 1], anchor: 'y', range: [0.5, events.length + 0.5], tickformat: 'd'}),
+    yaxis: axis(`x (${units.x})`, {range: [slip.x[0], slip.x.at(-1)]}), barmode: 'overlay', hovermode: 'closest', legend: {x: 1.02, y: 1},
+  });
+  return Plotly.react('extents-plot', traces, layout, CONFIG);
+}
+
+function drawSlips({units, slip, events}) {
+  const drawn = slip.events.map((number) => events[number - 1]);
+  const traces = drawn.map((event, k) => ({type: 'scatter', mode: 'lines', name: `after ${eventWords(event)}`, x: slip.x, y: slip.after[k],
+    line: {color: event.colour, width: 1.5}, meta: {event: event.number},
+    hovertemplate: `after ${eventWords(event)}: %{y:.4g} ${units.slip} at x = %{x:.4g} ${units.x}<extra></extra>`}));
+  const layout = layoutWith({xaxis: axis(`x (${units.x})`, {range: [slip.x[0], slip.x.at(-1)]}), yaxis: axis(`slip so far (${units.slip})`, {rangemode: 'tozero'}),
+    hovermode: 'closest', legend: {x: 1.02, y: 1}});
+  return Plotly.react('slips-plot', traces, layout, CONFIG);
+}
+
+/** Nothing on other pages. */
+function startSequence() {
+  if (!byId('forces-plot')) return null;
+  return Promise.all([drawForces, drawExtents, drawSlips].map((draw) => draw(data.sequence)));
+}

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of a sequence of slip events."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import to_hex
+
+from slipfront.figures.report import formatted, table
+from slipfront.files import is_number, number
+from slipfront.folder import SEQUENCE
+from slipfront.opened_sequence import OpenSequence
+from slipfront.read import STATUSES, Place, is_sequence, read_place
+from slipfront.report import setup
+from slipfront.report.numbers import Unit, listed, unit
+from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
+from slipfront.report.run import MOST_NODES, MOST_TIMES, navigation, program_words, sessions_words, thin_run
+from slipfront.report.run_data import evenly
+from slipfront.report.sketch import sketch
+from slipfront.report.study import MOST_ROWS
+from slipfront.units import quantity, unit_of
+
+is_kind = is_sequence  # of the folders of `slipfront report`
+PLACES = [
+    ("setup", "Set-up"),
+    ("computation", "Computation"),
+    ("forces", "Loads"),
+    ("extents", "Extents"),
+    ("slips", "Slip"),
+    ("events", "Events"),
+]
+MOST_CURVES = 60  # of slip, each after an event
+COLOURS, LIGHTEST = "viridis", 0.9  # from the first event to the last
+PHASES = {
+    "tilted": "before any shear",
+    "event_begins": "where event {} begins",
+    "slip_ends": "where event {} ends",
+    "at_rest": "at rest behind event {}",
+    "loaded": "at the end of the loading",
+}
+RATIO = "F<sub>S</sub>/F<sub>N</sub>"
+
+
+def mark(place: Place, n_events: int) -> str:
+    """How a sequence ended that did not come to its end; empty for a complete one."""
+    ending = STATUSES[place.status]
+    if ending is None:
+        return ""
+    return f"{ending} event {n_events if place.status == 'running' else n_events + 1}"
+
+
+def ending(place: Place, n_events: int) -> str:
+    """Whether a sequence is complete, and why it ended, in plain words."""
+    told = mark(place, n_events)
+    if told:
+        return f"<b>{words(told)}</b>" + (f": {words(place.reason)}" if place.reason else "")
+    return f"complete: {words(place.info.get('end') or 'why it ended is not given')}"
+
+
+def state_words(place: Place, key: str) -> str:
+    """Of a state of the loading that sequence.json tells."""
+    file, info = place.folder / SEQUENCE, place.info
+    names = ("shear_over_normal", "shear_force_N_per_m", "normal_force_N_per_m", "time_s", "shear_m", "event")
+    if key not in info:
+        return "not known yet"
+    ratio, *rest, event = (number(file, info, f"{key}.{name}") for name in names)
+    shear, normal, time, moved = (quantity(v, unit_of(n)) for n, v in zip(names[1:5], rest, strict=True))
+    phase = PHASES.get(str(info[key].get("phase")), "").format(round(event))
+    return f"{ratio:.4f}, {words(phase)}: {shear} over {normal}, at {time} and a displacement of {moved}"
+
+
+def facts(place: Place, sequence: OpenSequence) -> str:
+    events, imbalance = sequence.events, place.info.get("imbalance_over_largest_energy")
+    n = events.sizes["event"]
+    n_global = int((events["is_global"] == 1).sum())
+    return facts_table(
+        [
+            ("Folder", words(place.name)),
+            ("End", ending(place, n) + sessions_words(place.info)),
+            ("Events", f"{n}, {n_global} of them over the whole interface"),
+            (f"Largest {RATIO}", state_words(place, "largest_friction")),
+            (f"Last {RATIO}", state_words(place, "last")),
+            ("Imbalance of energy", f"{formatted(imbalance, '.2g')} of the largest term"),
+            ("Program", program_words(place.info)),
+        ]
+    )
+
+
+def setup_section(place: Place, sequence: OpenSequence, remarks: list[str]) -> str:
+    told = warnings_list(remarks, "mark")
+    if len(sequence.runs) == 0:
+        return section("setup", "Set-up", told, "<p>No event is complete.</p>")
+    first = thin_run(sequence.runs[0].folder, (MOST_TIMES, MOST_NODES))
+    return section(
+        "setup",
+        "Set-up",
+        told,
+        sketch(first),
+        facts_table(setup.rows(first)),
+        "<p>Loads, and what was expected, are of event 1.</p>",
+    )
+
+
+def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
+    """All that the plots show; there is an event."""
+    events, slip = sequence.events, sequence.slip
+    static = sequence.loading.isel(row=(sequence.loading["phase"] != "slip_ends").to_numpy())
+    after = np.cumsum(slip.to_numpy(), axis=0)
+    nodes, curves = evenly(slip.sizes["x_m"], MOST_NODES), evenly(len(after), MOST_CURVES)
+    units = {
+        "x": unit("length", slip["x_m"]),
+        "time": unit("time", static["time_s"]),
+        "slip": unit("slip", after),
+    }
+    colours = matplotlib.colormaps[COLOURS](np.linspace(0, LIGHTEST, events.sizes["event"]))
+    columns = {
+        "time": listed(events["begin_s"], units["time"].factor),
+        "before": listed(events["friction_before"]),
+        "after": listed(events["friction_after"]),
+        **{part: listed(events[f"{part}_x_m"], units["x"].factor) for part in ("begin", "from", "to")},
+        "number": events["event"].to_numpy().tolist(),
+        "colour": [to_hex(colour) for colour in colours],
+    }
+    return {
+        "units": {name: unit.name for name, unit in units.items()},
+        "loading": {
+            "time": listed(static["time_s"], units["time"].factor),
+            "ratio": listed(static["shear_over_normal"]),
+        },
+        "events": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
+        "slip": {
+            "x": listed(slip["x_m"][nodes], units["x"].factor),
+            "events": [1 + k for k in curves],
+            "after": [listed(row, units["slip"].factor) for row in after[np.ix_(curves, nodes)]],
+        },
+    }
+
+
+def thinning(data: dict[str, Any], n_nodes: int) -> str:
+    """What of the slip the page does not have."""
+    slip = data["slip"]
+    counts = ((len(slip["events"]), len(data["events"]), "events"), (len(slip["x"]), n_nodes, "nodes"))
+    return "".join(f" {shown} of {n} {name} are drawn." for shown, n, name in counts if shown < n)
+
+
+def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
+    return [
+        section(
+            "forces",
+            "Loads",
+            plot("forces-plot", "Shear over normal force over time, with the drop of each event"),
+            f"<p>{RATIO}: shear over normal force of the interface in static equilibria, the coefficient of "
+            "friction of the sample. Filled: an event begins; open: the equilibrium at rest behind it. From "
+            "event to event the line is straight, whatever happens there.</p>",
+        ),
+        section(
+            "extents",
+            "Extents",
+            plot("extents-plot", "Where each event slips, over the load at which it begins, and in order"),
+            "<p>Bars: from where to where an event slips. Diamonds: where slip begins inside.</p>",
+        ),
+        section(
+            "slips",
+            "Slip",
+            plot("slips-plot", "Slip along the interface after each event"),
+            "<p>Slip since the tilt, after each event: the sum of what the records end with. Dark: the "
+            f"first event, light: the last.{thinning(data, n_nodes)}</p>",
+        ),
+    ]
+
+
+def events_section(place: Place, sequence: OpenSequence) -> str:
+    events = sequence.events
+    n_events = events.sizes["event"]
+    if n_events == 0:
+        return section("events", "Events", "<p>None is complete.</p>")
+    events = events.isel(event=slice(MOST_ROWS))
+    left_out = f"<p>The first {MOST_ROWS} of {n_events} events.</p>" if n_events > MOST_ROWS else ""
+    units = {
+        "length": unit("length", [events[name].max() for name in ("to_x_m", "length_m")]),
+        "slip": unit("slip", events["max_slip_m"]),
+        "traction": unit("traction", events["stress_drop_Pa"]),
+        "shear": unit("slip", events["shear_m"]),
+        "time": unit("time", events["slip_s"]),
+        "1": Unit("", 1.0),
+    }
+    c_L = place.info.get("wave_speeds", {}).get("c_L_m_per_s")
+    speed = Unit("c<sub>L</sub>", 1 / c_L) if is_number(c_L) and c_L > 0 else Unit("m/s", 1.0)
+    columns = [
+        ("begin_s", "At", Unit("s", 1.0), ".6g"),
+        ("shear_m", "shear", units["shear"], ".5g"),
+        ("from_x_m", "From", units["length"], ".4g"),
+        ("to_x_m", "to", units["length"], ".4g"),
+        ("begin_x_m", "begins at", units["length"], ".4g"),
+        ("friction_before", RATIO, units["1"], ".4f"),
+        ("friction_after", "at rest", units["1"], ".4f"),
+        ("mean_slip_m", "Mean slip", units["slip"], ".3g"),
+        ("max_slip_m", "largest", units["slip"], ".3g"),
+        ("stress_drop_Pa", "Stress drop", units["traction"], ".3g"),
+        ("released_J_per_m", "Released", Unit("J/m", 1.0), ".3g"),
+        ("breakdown_work_J_per_m", "breakdown", Unit("J/m", 1.0), ".3g"),
+        ("wave_loss_J_per_m", "waves left", Unit("J/m", 1.0), ".3g"),
+        ("slip_s", "Slips for", units["time"], ".4g"),
+        ("n_fronts", "Fronts", units["1"], ".0f"),
+        ("median_speed_m_per_s", "speed", speed, ".3g"),
+    ]
+    header = ["Event", *(f"{name} ({of.name})" if of.name else name for _, name, of, _ in columns)]
+    cells = [[formatted(float(v), form, of.factor) for v in events[key]] for key, _, of, form in columns]
+    numbers = [str(int(n)) for n in events["event"]]
+    example = words(place.folder / "events" / "0001")
+    return section(
+        "events",
+        "Events",
+        left_out,
+        table(header, [list(row) for row in zip(numbers, *cells, strict=True)], kind="dense"),
+        "<p>Speed: the median of the longest front. All columns: events.csv, docs/files.md. A page of one "
+        f"event: <code>slipfront report {example}</code>.</p>",
+    )
+
+
+def page(folder: Path, _file: Path) -> Page:
+    place = read_place(folder, SEQUENCE)
+    sequence = OpenSequence(place)
+    n_events = sequence.events.sizes["event"]
+    told = mark(place, n_events)
+    title = str(place.info.get("title", "")) or place.name
+    data = sequence_data(sequence) if n_events else {}
+    remarks = [*([f"{told}: {place.reason}" if place.reason else told] if told else []), *place.notes]
+    missing = set() if data else {"forces", "extents", "slips"}
+    return Page(
+        title=f"{title}: {told}" if told else title,
+        parts=[
+            navigation([part for part in PLACES if part[0] not in missing]),
+            setup_section(place, sequence, remarks),
+            section("computation", "Computation", facts(place, sequence)),
+            *(plots(data, sequence.slip.sizes["x_m"]) if data else []),
+            events_section(place, sequence),
+        ],
+        data={"runs": [], "sequence": data} if data else {},
+        notes=remarks,
+    )

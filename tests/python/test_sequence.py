@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sequences of slip events from Python: run, gone on with, opened; what is damaged is refused; their page."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import shutil
+
+import numpy as np
+import pytest
+import slipfront
+from common import refusal, require_done, require_same_bytes
+from package_cases import program, write_case
+from refusals import flip, replace
+from report_pages import data_of, page_of
+from slipfront.read import ENERGY_TERMS, read_run
+
+N_EVENTS = 4
+# A fraction of a second.
+SEQUENCE = f"""\
+title = "coarse sequence"
+
+[plate]
+element_size_m = 4e-3
+
+[event]
+kind = "spontaneous"
+
+[sequence]
+max_events = {N_EVENTS}
+"""
+TABLES = ("case.resolved.toml", "events.csv", "loading.csv")
+RUN_TABLES = ("interface.h5", "fronts.csv", "fracture.csv", "energy.csv", "static.csv")
+STORED = ("strain", "kinetic")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("sequence")
+    require_done(program("run", write_case(place, SEQUENCE), "-q", "-o", "out", cwd=place))
+    return place / "out"
+
+
+@pytest.fixture
+def copy(folder, tmp_path):
+    return shutil.copytree(folder, tmp_path / "out")
+
+
+@pytest.fixture
+def interrupted(tmp_path):
+    """Its third event is under way."""
+
+    def stop(part, _step, _total):
+        if part == "event 3":
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        slipfront.run(write_case(tmp_path, SEQUENCE), output=tmp_path / "out", progress=stop)
+    return tmp_path / "out"
+
+
+def require_the_programs(ours, theirs):
+    require_same_bytes(ours, theirs, *TABLES)
+    for k in range(1, N_EVENTS + 1):
+        require_same_bytes(*(place / f"events/{k:04}" for place in (ours, theirs)), *RUN_TABLES)
+
+
+# Run, gone on with
+
+
+def test_a_sequence_has_the_bytes_of_the_programs(folder, tmp_path):
+    sequence = slipfront.run(SEQUENCE, output=tmp_path / "ours")
+    assert isinstance(sequence, slipfront.OpenSequence) and sequence.status == "complete"
+    require_the_programs(tmp_path / "ours", folder)
+
+
+def test_a_sequence_in_a_temporary_folder_lasts_as_long_as_its_runs():
+    run = slipfront.run(SEQUENCE).runs[0]
+    assert float(run.history["slip_m"][-1].max()) > 0
+
+
+def test_it_goes_on_as_if_it_had_never_stopped(folder, interrupted):
+    sequence = slipfront.open(interrupted)
+    assert (sequence.status, sequence.folder.name) == ("interrupted", "unfinished")
+    assert len(sequence.runs) == sequence.events.sizes["event"] == 2
+    assert slipfront.open(sequence.folder / "events" / "0003").status == "interrupted"
+    resumed = slipfront.resume(interrupted)
+    assert isinstance(resumed, slipfront.OpenSequence) and resumed.info["sessions"] == 2
+    require_the_programs(interrupted, folder)
+    assert repr(slipfront.resume(interrupted)) == repr(resumed)
+
+
+def test_an_observer_sees_each_event(tmp_path):
+    begun = []
+
+    def look(state):
+        if state.step == 0:
+            begun.append(float(np.abs(state.slip_m).max()))
+
+    slipfront.run(SEQUENCE, output=tmp_path / "out", observers=[(1.0, look)])
+    assert begun == [0.0] * N_EVENTS
+
+
+def test_a_law_in_python_is_of_one_event():
+    with pytest.raises(
+        slipfront.CaseError, match="sequence.max_events is 4; a law in Python is of one event"
+    ):
+        slipfront.run_with_law(SEQUENCE, lambda rate, slip: np.full_like(slip, 1.3))
+
+
+@pytest.mark.parametrize("study", ["convergence", "interface-step"])
+def test_a_study_is_of_one_event(study, tmp_path):
+    found = program("study", study, write_case(tmp_path, SEQUENCE), "-o", "out", cwd=tmp_path)
+    assert "sequence.max_events is 4; a study is of one event" in refusal(found)
+
+
+# Opened
+
+
+def test_tables_are_the_files(folder):
+    sequence = slipfront.open(folder)
+    for found, name in ((sequence.events, "events.csv"), (sequence.loading, "loading.csv")):
+        with open(folder / name, newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        assert set(found.variables) == rows[0].keys()
+        for column in rows[0].keys() - {"phase"}:
+            expected = [float(row[column] or "nan") for row in rows]
+            assert np.array_equal(found[column], expected, equal_nan=True)
+            assert found[column].attrs["long_name"]
+    phases = ["tilted", *["event_begins", "slip_ends", "at_rest"] * N_EVENTS]
+    assert list(sequence.loading["phase"].to_numpy()) == phases
+    assert sequence.events["event"].to_numpy().tolist() == [1, 2, 3, 4]
+    units = {"potency_m2": "m2", "released_J_per_m": "J/m", "friction_before": "1", "begin_s": "s"}
+    assert {name: sequence.events[name].attrs["units"] for name in units} == units
+    assert sequence.info["events"] == N_EVENTS and sequence.case["sequence"]["max_events"] == N_EVENTS
+    assert repr(sequence) == f"<slipfront sequence 'coarse sequence', 4 events, complete: {folder}>"
+
+
+def test_runs_are_the_events(folder):
+    sequence = slipfront.open(folder)
+    assert [run.folder.name for run in sequence.runs] == ["0001", "0002", "0003", "0004"]
+    assert sequence.runs[-1].folder == sequence.runs[3:][0].folder
+    with pytest.raises(IndexError):
+        sequence.runs[N_EVENTS]
+    for k, run in enumerate(sequence.runs):
+        event, slip = sequence.events.isel(event=k), sequence.slip.isel(event=k)
+        assert np.array_equal(slip, run.history["slip_m"][-1])
+        assert len(run.info["fronts"]) == event["n_fronts"]
+        assert slip.max() == event["max_slip_m"]
+
+
+def test_the_energies_balance(folder):
+    loading = slipfront.open(folder).loading
+    terms = {term: loading[f"{term}_J_per_m"].to_numpy() for term in ENERGY_TERMS}
+    change = sum(terms[term] - terms[term][0] for term in STORED)
+    works = sum(values for term, values in terms.items() if term not in STORED)
+    open_J_per_m = change - works + loading["wave_loss_J_per_m"].to_numpy()
+    largest = max(np.abs(values).max() for values in terms.values())
+    assert np.abs(open_J_per_m).max() < 1e-11 * largest
+    assert np.abs(loading["imbalance_J_per_m"] - open_J_per_m).max() < 1e-13 * largest
+
+
+def test_what_an_event_releases_is_what_the_loading_loses(folder):
+    sequence = slipfront.open(folder)
+    loading = sequence.loading
+    strain = {
+        phase: loading["strain_J_per_m"][(loading["phase"] == phase).to_numpy()].to_numpy()
+        for phase in ("event_begins", "at_rest")
+    }
+    released = sequence.events["released_J_per_m"].to_numpy()
+    np.testing.assert_allclose(strain["event_begins"] - strain["at_rest"], released, rtol=1e-9)
+    losses = sequence.events["wave_loss_J_per_m"].sum()
+    np.testing.assert_allclose(loading["wave_loss_J_per_m"][-1], losses, rtol=1e-9)
+
+
+# Refused
+
+
+def refused(work) -> str:
+    with pytest.raises(slipfront.DataError) as error:
+        work()
+    return str(error.value)
+
+
+def test_a_file_that_is_missing_or_changed_is_refused(copy):
+    flip(copy / "loading.csv")
+    (copy / "events.csv").unlink()
+    sequence = slipfront.open(copy)
+    assert "loading.csv: does not match checksums.sha256" in refused(lambda: sequence.loading)
+    assert "events.csv: missing" in refused(lambda: sequence.events)
+    (copy / "sequence.json").unlink()
+    assert "sequence.json: missing" in refused(lambda: slipfront.open(copy))
+
+
+def test_an_event_that_is_missing_or_of_another_sequence_is_refused(copy):
+    shutil.rmtree(copy / "events/0003")
+    shutil.rmtree(copy / "events/0004")
+    shutil.copytree(copy / "events/0001", copy / "events/0004")
+    flip(copy / "events/0002/interface.h5")
+    runs = slipfront.open(copy).runs
+    assert "0003/checksums.sha256: missing" in refused(lambda: runs[2])
+    assert "0004/checksums.sha256: does not match" in refused(lambda: runs[3])
+    assert "interface.h5: does not match" in refused(lambda: runs[1].history)
+    assert runs[0].status == "complete"
+
+
+@pytest.mark.parametrize(
+    "old, new, told",
+    [
+        ("\n2,", "\n3,", "its events are not numbered from 1"),
+        ("\n2,", "\n2.5,", "a value of column 'event' is no number of events"),
+        ("event,", "events,", "no column 'event'"),
+    ],
+)
+def test_a_table_without_a_list_that_makes_no_sense_is_refused(copy, old, new, told):
+    (copy / "checksums.sha256").unlink()
+    replace(copy / "events.csv", old, new)
+    assert f"events.csv: {told}" in refused(lambda: slipfront.open(copy).events)
+
+
+def test_readers_of_one_run_name_the_events(folder):
+    assert "of a sequence of events; name the folder of one of them" in refused(lambda: read_run(folder))
+
+
+# The page
+
+
+def test_the_page_holds_each_event(folder, tmp_path):
+    sequence = slipfront.open(folder)
+    text = page_of(folder, tmp_path / "page.html")
+    data = data_of(text)["sequence"]
+    assert data["units"] == {"x": "mm", "time": "s", "slip": "µm"}
+    assert [event["number"] for event in data["events"]] == [1, 2, 3, 4]
+    for name, column, factor in (
+        ("time", "begin_s", 1),
+        ("before", "friction_before", 1),
+        ("after", "friction_after", 1),
+        ("from", "from_x_m", 1e3),
+        ("to", "to_x_m", 1e3),
+        ("begin", "begin_x_m", 1e3),
+    ):
+        drawn = [event[name] for event in data["events"]]
+        np.testing.assert_allclose(drawn, factor * sequence.events[column], rtol=1e-4)
+    np.testing.assert_allclose(data["slip"]["after"], 1e6 * np.cumsum(sequence.slip, axis=0), rtol=1e-4)
+    assert len(data["loading"]["time"]) == 1 + 2 * N_EVENTS
+    rows = re.findall(r"<tr><td>(\d+)</td>", text)
+    assert rows == ["1", "2", "3", "4"]
+    for part in ("coarse sequence", "complete: sequence.max_events = 4 was reached", "where event 1 begins"):
+        assert part in text
+
+
+def test_what_the_page_leaves_out_is_told(folder, tmp_path, monkeypatch):
+    for name, most in (("MOST_NODES", 20), ("MOST_CURVES", 2), ("MOST_ROWS", 3)):
+        monkeypatch.setattr(f"slipfront.report.sequence.{name}", most)
+    text = page_of(folder, tmp_path / "page.html")
+    slip = data_of(text)["sequence"]["slip"]
+    assert "2 of 4 events are drawn. 20 of 51 nodes are drawn." in text
+    assert "The first 3 of 4 events." in text and len(re.findall(r"<tr><td>\d+</td>", text)) == 3
+    assert len(slip["x"]) == 20 and (slip["x"][0], slip["x"][-1]) == (0, 200) and slip["events"] == [1, 4]
+    last = 1e6 * slipfront.open(folder).slip.sum("event")
+    np.testing.assert_allclose(slip["after"][1][::19], last[::50], rtol=1e-4)
+
+
+def test_the_page_of_a_sequence_that_is_not_over(interrupted):
+    text = page_of(interrupted)
+    assert len(data_of(text)["sequence"]["events"]) == 2
+    assert "<h1>coarse sequence: interrupted at event 3</h1>" in text
+    assert "interrupted in event 3 at t =" in text
+
+
+def test_the_page_of_a_sequence_without_an_event(interrupted):
+    place = interrupted / "unfinished"
+    for name in ("events.csv", "loading.csv"):
+        head = (place / name).read_text().split("\n")[0]
+        (place / name).write_text(head + "\n")
+    info = json.loads((place / "sequence.json").read_text())
+    kept = ("version", "title", "status", "reason", "sessions", "end", "wave_speeds")
+    (place / "sequence.json").write_text(json.dumps({k: info[k] for k in kept} | {"status": "running"}))
+    text = page_of(interrupted)
+    assert "No event is complete." in text and 'class="plot"' not in text
+    assert "still running or killed, results up to event 0" in text
