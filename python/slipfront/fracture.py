@@ -84,7 +84,7 @@ def predict_fronts(
     1990). G_static is by statics of the sample, or of half-spaces where its edges absorb waves.
 
     case: as for `run`; or an opened run, whose breakdown work and residual coefficients are then those of the
-    prediction unless they are given.
+    prediction unless they are given; of an event of a sequence the tractions before it, too.
     fracture_energy_J_per_m2, residual_coefficient: a number, or places and values, instead of those of the
     friction law, which has none where it does not weaken over a slip. Residual traction: this coefficient
     times p, and the cohesion.
@@ -97,6 +97,7 @@ def predict_fronts(
     Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
     notes = []
+    before = None
     if isinstance(case, OpenRun):
         if any(str(name).startswith("friction") for name in (*(changes or {}), *tables)):
             raise CaseError("friction of an opened run is what it came to: give its case to change friction")
@@ -106,6 +107,9 @@ def predict_fronts(
             notes = [f"friction beyond {ends}, where no front broke it down, is that at these ends"]
         energy = (x_m, work) if energy is None else energy
         residual = (x_m, coefficient) if residual is None else residual
+        if case.is_of_sequence:
+            before = tuple(case.tractions[name].to_numpy() for name in ("x_m", "t_s_Pa", "p_s_Pa"))
+            at_x_m = case.info["statics"]["peak_x_m"] if at_x_m is None else at_x_m
         case = case.case
     energies = along_x(energy, "fracture_energy_J_per_m2", above=0)
     residuals = along_x(residual, "residual_coefficient", above=None)
@@ -116,7 +120,7 @@ def predict_fronts(
 
     at = None if at_x_m is None else number(at_x_m, "at_x_m", finite=True)
     prepared = make_case(case, changes, tables)
-    found = _core.predict_fronts(prepared, places, at_places(energies), at_places(residuals), at)
+    found = _core.predict_fronts(prepared, places, at_places(energies), at_places(residuals), at, before)
     points = {
         name: xr.Variable(("point",), values, attributes(name))
         for name, values in found.pop("points").items()

@@ -154,6 +154,11 @@ class OpenRun:
         are the copies of the run, by their whole paths."""
         return read_case(self.folder)
 
+    @property
+    def is_of_sequence(self) -> bool:
+        """Whether the run is an event of a sequence: its case alone does not lead to it."""
+        return bool(self.case.get("sequence", {}).get("max_events", 1) > 1)
+
     @cached_property
     def tractions(self) -> xr.Dataset:
         """static.csv: t_s_Pa and p_s_Pa before the event over x_m, and what varies of friction."""

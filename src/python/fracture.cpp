@@ -3,9 +3,11 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "fracture/prediction.hpp"
@@ -19,12 +21,20 @@ namespace {
 using namespace nb::literals;
 
 nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const Values& fracture_energy,
-                        const Values& residual_coefficient, const std::optional<double>& at_x_m) {
+                        const Values& residual_coefficient, const std::optional<double>& at_x_m,
+                        const std::optional<std::tuple<Values, Values, Values>>& before) {
   const run::TipFriction friction{to_vector(x_m), to_vector(fracture_energy),
                                   to_vector(residual_coefficient)};
+  std::optional<record::StaticState> state;
+  if (before) {
+    const auto& [places, t_Pa, p_Pa] = *before;
+    state = {to_vector(places), to_vector(t_Pa), to_vector(p_Pa)};
+  }
   const auto p = [&] {
     const nb::gil_scoped_release unlocked;
-    return given.placing_errors([&] { return run::predict_fronts(given.config(), friction, at_x_m); });
+    return given.placing_errors([&] {
+      return run::FrontPredictor(given.config()).predict(friction, at_x_m, state ? &*state : nullptr);
+    });
   }();
   const auto& of = p.of_fronts;
   nb::dict points;
@@ -56,8 +66,9 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
 
 void bind_fracture(nb::module_& module) {
   module.def("predict_fronts", &predict_fronts, "case"_a, "x_m"_a, "fracture_energy_J_per_m2"_a,
-             "residual_coefficient"_a, "at_x_m"_a.none(),
-             "Fronts of a case by the equation of motion of cracks; empty arrays leave friction to the law.");
+             "residual_coefficient"_a, "at_x_m"_a.none(), "before"_a.none(),
+             "Fronts of a case by the equation of motion of cracks; empty arrays leave friction to the law. "
+             "before: places, t and p before the event, instead of those of the case.");
 }
 
 }  // namespace slipfront::python

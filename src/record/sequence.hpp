@@ -76,6 +76,7 @@ struct SequenceEvent {
   double normal_force_N_per_m = 0, shear_force_N_per_m = 0, friction_before = 0, friction_after = 0;
   double stress_drop_Pa = nan;
   double released_J_per_m = 0, friction_work_J_per_m = 0, breakdown_work_J_per_m = 0, wave_loss_J_per_m = 0;
+  double predicted_from_x_m = nan, predicted_to_x_m = nan;
   double slip_s = 0;
   double n_fronts = 0, median_speed_m_per_s = nan;
 
@@ -83,7 +84,7 @@ struct SequenceEvent {
   void serialize(Archive& archive);
 };
 
-inline constexpr std::array<Column<SequenceEvent, double>, 22> sequence_event_fields = {{
+inline constexpr std::array<Column<SequenceEvent, double>, 24> sequence_event_fields = {{
     {"begin_s", "s", "time since the tilt at which it begins", &SequenceEvent::begin_s},
     {"shear_m", "m", "displacement of the top edge then", &SequenceEvent::shear_m},
     {"begin_x_m", "m", "where slip begins inside", &SequenceEvent::begin_x_m},
@@ -105,6 +106,10 @@ inline constexpr std::array<Column<SequenceEvent, double>, 22> sequence_event_fi
     {"breakdown_work_J_per_m", "J/m", "that above the residual traction: fracture energy times area",
      &SequenceEvent::breakdown_work_J_per_m},
     {"wave_loss_J_per_m", "J/m", "energy of the waves left at its end", &SequenceEvent::wave_loss_J_per_m},
+    {"predicted_from_x_m", "m",
+     "left end by the equation of motion of a crack in the tractions before, of laws with a fracture energy",
+     &SequenceEvent::predicted_from_x_m},
+    {"predicted_to_x_m", "m", "right end by it", &SequenceEvent::predicted_to_x_m},
     {"slip_s", "s", "from the first beginning of slip to the last end", &SequenceEvent::slip_s},
     {"n_fronts", "1", "fronts found", &SequenceEvent::n_fronts},
     {"median_speed_m_per_s", "m/s", "median speed of the longest front",

@@ -194,7 +194,7 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
 
 /// What the prediction leaves out.
 void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
-               const statics::Equilibrium& before, bool by_law, FracturePrediction& p) {
+               bool by_law, bool has_state_before, FracturePrediction& p) {
   const auto absorbs = [](const mesh::Plate& plate) {
     return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
   };
@@ -218,55 +218,78 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
         "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
         "the event on",
         slip_rate_at_tip_m_per_s));
+  if (input::is_sequence(given) && !has_state_before)
+    p.notes.emplace_back("of the first event of the sequence");
   if (given.loading.method == statics::LoadingMethod::ramp)
     p.notes.emplace_back("the state before the event is that of loading.method = direct");
   if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
-  if (auto doubt = doubt_of_beginning(config, before); !doubt.empty()) p.notes.push_back(std::move(doubt));
 }
 
 }  // namespace
 
-FracturePrediction predict_fronts(const input::Case& given, const TipFriction& friction,
-                                  const std::optional<double>& x_m) {
-  auto config = in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces);
-  if (config.loading.method == statics::LoadingMethod::ramp)
-    config.loading.method = statics::LoadingMethod::direct;
-  const auto initial = make_initial_state(config, [](auto, auto) { return true; });
-  const auto bodies = bodies_of(config);
-  const auto& before = initial.common.tractions;
-  const Laws laws(config, before.x_m);
+bool has_fracture_energy(const input::Case& config) {
+  return config.friction.has_state() || interface::weakening_slip_m(config.friction);
+}
+
+FrontPredictor::FrontPredictor(const input::Case& given)
+    : given_(given),
+      config_(in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces)) {
+  if (config_.loading.method == statics::LoadingMethod::ramp)
+    config_.loading.method = statics::LoadingMethod::direct;
+  initial_ = make_initial_state(config_, [](auto, auto) { return true; });
+  response_ = is_held(config_)
+                  ? response_of_sample(config_, initial_)
+                  : fracture::response_of_half_spaces(bodies_of(config_), initial_.common.tractions.x_m);
+}
+
+FracturePrediction FrontPredictor::predict(const TipFriction& friction, const std::optional<double>& x_m,
+                                           const record::StaticState* given_before) const {
+  const auto bodies = bodies_of(config_);
+  auto before = initial_.common.tractions;
+  for (std::size_t k = 0; given_before != nullptr && k < before.x_m.size(); ++k) {
+    before.t_s_Pa[k] = at(given_before->x_m, given_before->t_s_Pa, before.x_m[k]);
+    before.p_s_Pa[k] = at(given_before->x_m, given_before->p_s_Pa, before.x_m[k]);
+  }
+  const Laws laws(config_, before.x_m);
   FracturePrediction p;
   p.n_nodes = before.x_m.size();
   fracture::CrackLoads loads;
   loads.t_Pa = before.t_s_Pa;
   loads.p_Pa = before.p_s_Pa;
-  const auto energies = add_friction(config, laws, friction, before, loads);
-  add_trigger(config, initial, loads.t_Pa);
-  auto response = is_held(config) ? response_of_sample(config, initial)
-                                  : fracture::response_of_half_spaces(bodies, before.x_m);
-  p.bodies = is_held(config) ? "the sample, its far edges held" : "half-spaces";
+  const auto energies = add_friction(config_, laws, friction, before, loads);
+  add_trigger(config_, initial_, loads.t_Pa);
+  p.bodies = is_held(config_) ? "the sample, its far edges held" : "half-spaces";
   // To the side to which the load drives the plate.
   double force = 0;
   for (const double t_Pa : loads.t_Pa) force += t_Pa;
+  std::optional<fracture::SlipResponse> turned;
   if (force < 0) {
     for (double& t_Pa : loads.t_Pa) t_Pa = -t_Pa;
-    response.p_per_slip *= -1;
+    turned = response_;
+    turned->p_per_slip *= -1;
   }
-  const auto patch = first_crack(config, initial, x_m);
+  const auto& response = turned ? *turned : response_;
+  const auto patch = first_crack(config_, initial_, x_m);
   p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
   p.nucleation_length_m =
-      nucleation_length_m(laws, response, before, interface::follows_pressure(config.regularisation),
+      nucleation_length_m(laws, response, before, interface::follows_pressure(config_.regularisation),
                           (patch.first + patch.last) / 2);
   p.of_fronts =
       fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
-  add_notes(given, config, bodies, initial.common, friction.fracture_energy_J_per_m2.empty(), p);
+  add_notes(given_, config_, bodies, friction.fracture_energy_J_per_m2.empty(), given_before != nullptr, p);
+  if (auto doubt = doubt_of_beginning(config_, initial_.common); given_before == nullptr && !doubt.empty())
+    p.notes.push_back(std::move(doubt));
   return p;
+}
+
+FracturePrediction predict_fronts(const input::Case& config, const TipFriction& friction,
+                                  const std::optional<double>& x_m) {
+  return FrontPredictor(config).predict(friction, x_m);
 }
 
 std::optional<FracturePrediction> quick_prediction(const input::Case& config) {
   if (!input::is_prestressed(config) || is_held(config) || config.event == interface::EventKind::none ||
-      config.plate.sides == mesh::Sides::periodic ||
-      !(config.friction.has_state() || interface::weakening_slip_m(config.friction)))
+      config.plate.sides == mesh::Sides::periodic || !has_fracture_energy(config))
     return {};
   return predict_fronts(config);
 }

@@ -8,7 +8,10 @@
 
 #include "base/numbers.hpp"
 #include "fracture/prediction.hpp"
+#include "fracture/static_crack.hpp"
 #include "input/case.hpp"
+#include "record/record.hpp"
+#include "run/initial_state.hpp"
 
 namespace slipfront::run {
 
@@ -35,11 +38,30 @@ struct FracturePrediction {
 /// held.
 std::optional<FracturePrediction> quick_prediction(const input::Case& config);
 
-/// Solves the statics of the case's sample, with elements large enough for some hundreds of nodes on the
-/// interface.
-/// @param friction  instead of the law's
-/// @param x_m       where the crack begins, instead of at the case's trigger
-/// @throws UserError where the law has no fracture energy of its own and none is given
+/// Whether the law has a fracture energy of its own.
+bool has_fracture_energy(const input::Case& config);
+
+/// Predicts fronts of one sample. Its statics are solved once, with elements large enough for some hundreds
+/// of nodes on the interface.
+class FrontPredictor {
+ public:
+  /// @throws UserError as the statics of the case
+  explicit FrontPredictor(const input::Case& config);
+
+  /// @param friction  instead of the law's
+  /// @param x_m       where the crack begins, instead of at the case's trigger
+  /// @param before    tractions before the event at any places, instead of the case's
+  /// @throws UserError where the law has no fracture energy of its own and none is given
+  FracturePrediction predict(const TipFriction& friction = {}, const std::optional<double>& x_m = {},
+                             const record::StaticState* before = nullptr) const;
+
+ private:
+  input::Case given_, config_;
+  InitialState initial_;
+  fracture::SlipResponse response_;
+};
+
+/// Of one event.
 FracturePrediction predict_fronts(const input::Case& config, const TipFriction& friction = {},
                                   const std::optional<double>& x_m = {});
 

@@ -66,6 +66,7 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
       plate_(solid::make_operator(initial_.mesh, config.material)) {
   if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
   describe_solver(config, statics_, initial_);
+  if (has_fracture_energy(config)) predictor_.emplace(config);
   at_rest_ = statics_.tilted();
   loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
   loading_.back().energies.strain = strain_energy_J_per_m(at_rest_);
@@ -113,7 +114,7 @@ std::string Sequence::end() const {
 }
 
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
-  auto loaded = row(phase, state.shear_m, state.tractions);
+  auto loaded = row(phase, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
   loaded.energies.strain = strain_energy_J_per_m(state);
   if (phase == LoadingPhase::event_begins) loaded.n_events += 1;
@@ -126,13 +127,13 @@ const InitialState* Sequence::next() {
   const auto at_least = [&](statics::Equilibrium state) {
     return state.shear_m > at_rest_.shear_m ? std::move(state) : statics_.shear_by(at_rest_.shear_m);
   };
-  initial_.critical_shear_m = statics_.shear_to(1).shear_m;
+  initial_.critical_shear_m = statics_.shear_to(1).shear_m + held_.moved_m;
   initial_.common = at_least(statics_.shear_to(1 - margin));
   initial_.spontaneous = at_least(statics_.shear_to(1 + margin));
   const double end_s = config_.sequence.end_s;
-  if (time_s(initial_.spontaneous.shear_m) > end_s) {
-    load_to(LoadingPhase::loaded,
-            statics_.shear_by(std::max(at_rest_.shear_m, end_s * top_speed_m_per_s(config_))));
+  if (time_s(initial_.spontaneous.shear_m + held_.moved_m) > end_s) {
+    const double end_m = end_s * top_speed_m_per_s(config_) - held_.moved_m;
+    load_to(LoadingPhase::loaded, statics_.shear_by(std::max(at_rest_.shear_m, end_m)));
     return nullptr;
   }
   load_to(LoadingPhase::event_begins, initial_.spontaneous);
@@ -147,14 +148,19 @@ void Sequence::take(const Result& result) {
   const auto& row_at_end = event.last_row;
   const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
   const auto u = relative(initial_, initial_.spontaneous);
-  held_.shear_m = begins.shear_m + top_speed_m_per_s(config_) * event.time_s;
+  const double shear_m = begins.shear_m + top_speed_m_per_s(config_) * event.time_s;
   held_.contact.clear();
   held_.u_x_m.clear();
+  double mean_m = 0;
   for (std::size_t k = 0; k < u.x_m.size(); ++k) {
     held_.contact.push_back(row_at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
     held_.u_x_m.push_back(u.x_m[k] + row_at_end.slip_m[k]);
+    mean_m += held_.u_x_m.back() / static_cast<double>(u.x_m.size());
   }
-  auto ends = row(LoadingPhase::slip_ends, held_.shear_m, tractions_at_end);
+  for (double& u_x_m : held_.u_x_m) u_x_m -= mean_m;
+  held_.moved_m += mean_m;
+  held_.shear_m = shear_m - held_.moved_m;
+  auto ends = row(LoadingPhase::slip_ends, shear_m, tractions_at_end);
   ends.n_events += 1;
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
@@ -164,7 +170,7 @@ void Sequence::take(const Result& result) {
   loading_.push_back(ends);
 
   rest();
-  auto rests = row(LoadingPhase::at_rest, held_.shear_m, at_rest_.tractions);
+  auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
   rests.n_events += 1;
   rests.energies.strain = strain_energy_J_per_m(at_rest_);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
@@ -230,11 +236,24 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
     for (const auto& point : longest->points) speeds.push_back(point.v_tip_m_per_s);
     e.median_speed_m_per_s = fronts::median(speeds);
   }
+  predict(e);
   events_.push_back(e);
 }
 
+void Sequence::predict(record::SequenceEvent& event) const {
+  if (!predictor_) return;
+  const auto p = predictor_->predict({}, initial_.spontaneous.peak_x_m, &initial_.spontaneous.tractions);
+  for (const auto& front : p.of_fronts.fronts) {
+    // The last node of a front that arrests is the one that it does not break.
+    const std::size_t unbroken = front.end == fracture::PredictedEnd::arrest ? 1 : 0;
+    if (front.points.size() <= unbroken) continue;
+    const double end_x_m = front.points[front.points.size() - 1 - unbroken].x_m;
+    (front.direction < 0 ? event.predicted_from_x_m : event.predicted_to_x_m) = end_x_m;
+  }
+}
+
 void Sequence::serialize(StateArchive& archive) {
-  archive(held_.shear_m, held_.contact, held_.u_x_m, loading_, events_);
+  archive(held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, loading_, events_);
   if (!archive.is_loading()) return;
   const std::size_t n = initial_.tributary_m.size();
   const auto are_finite = [](const std::vector<double>& values) {
@@ -242,7 +261,8 @@ void Sequence::serialize(StateArchive& archive) {
   };
   require_possible(
       !events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n && are_finite(held_.u_x_m) &&
-          std::isfinite(held_.shear_m) && std::ranges::max(held_.contact) <= statics::Contact::open &&
+          std::isfinite(held_.shear_m) && std::isfinite(held_.moved_m) &&
+          std::ranges::max(held_.contact) <= statics::Contact::open &&
           loading_.size() == 1 + 3 * events_.size() &&
           std::ranges::all_of(loading_,
                               [](const LoadingRow& row) { return row.phase <= LoadingPhase::at_rest; }),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "record/sequence.hpp"
+#include "run/fracture.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
 #include "solid/operator.hpp"
@@ -41,11 +42,13 @@ class Sequence {
   void serialize(StateArchive& archive);
 
  private:
-  /// Where nodes in contact stick.
+  /// Where nodes in contact stick. The plate is where its mean slip has moved it: that strains nothing, and
+  /// would take digits from what does.
   struct Held {
-    double shear_m = 0;
+    double moved_m = 0;
+    double shear_m = 0;  ///< of the top edge beyond that
     std::vector<statics::Contact> contact;
-    std::vector<double> u_x_m;  ///< [interface nodes] relative to a base
+    std::vector<double> u_x_m;  ///< [interface nodes] relative to a base, beyond that
   };
 
   /// Finds the equilibrium of held_.
@@ -54,9 +57,11 @@ class Sequence {
   /// Adds the row of an equilibrium after the last one.
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
   double strain_energy_J_per_m(const statics::Equilibrium& state) const;
-  /// With the works so far.
+  /// With the works so far. @param shear_m  since the tilt
   record::LoadingRow row(record::LoadingPhase phase, double shear_m,
                          const record::StaticState& tractions) const;
+  /// By the state in which it begins.
+  void predict(record::SequenceEvent& event) const;
   void add_event(const Result& result, const record::LoadingRow& before, const record::LoadingRow& after,
                  const record::StaticState& tractions_after);
 
@@ -65,8 +70,9 @@ class Sequence {
   statics::Statics statics_;
   solid::Operator plate_;
   std::optional<solid::Operator> base_;
-  statics::Equilibrium at_rest_;  ///< before the next event
-  Held held_;                     ///< empty before the first event
+  std::optional<FrontPredictor> predictor_;  ///< of laws with a fracture energy
+  statics::Equilibrium at_rest_;             ///< before the next event
+  Held held_;                                ///< empty before the first event
   std::vector<record::LoadingRow> loading_;
   std::vector<record::SequenceEvent> events_;
 };

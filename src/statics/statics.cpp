@@ -492,9 +492,19 @@ Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
                                make_case, settle_problem, *sheared_);
   }
   auto& [problem, shear] = settled;
-  // A guess of the shear that was too large leaves slip where the edge of contact has moved away from.
-  while (sticks_inside && problem->stick_again(is_outside))
-    shear = settle_problem(*problem, final_accuracy, final_accuracy);
+  // A guess of the shear that was too large leaves slip where the edge of contact has moved away from. Where
+  // such a node stays on neither side of the edge's margin, its slip counts.
+  while (sticks_inside) {
+    const auto with_slip = problem->states;
+    if (!problem->stick_again(is_outside)) break;
+    try {
+      shear = settle_problem(*problem, final_accuracy, final_accuracy);
+    } catch (const UserError&) {
+      problem->states = with_slip;
+      shear = settle_problem(*problem, final_accuracy, final_accuracy);
+      break;
+    }
+  }
   if (solver_->iterates()) last_ = problem->states;
 
   Equilibrium e = make_equilibrium(*problem, shear, loading_.edge_margin_m);
@@ -530,11 +540,13 @@ Equilibrium Statics::shear_to_force(double force_N_per_m) const {
         key, of_tilt, force_N_per_m, keys_of_tilt(loading_), Key("loading.top_during_tilt"));
   last_.reset();  // the way begins at the tilt: back from a larger shear contact ends in other states
   bool reached = true;
-  Equilibrium e = shear([&](const ContactProblem& problem, const Inside&) {
-    const double found = problem.shear_at(&ContactProblem::t_Pa, force_N_per_m);
-    reached = std::isfinite(found);
-    return reached ? found : 0.0;
-  }, false);
+  Equilibrium e = shear(
+      [&](const ContactProblem& problem, const Inside&) {
+        const double found = problem.shear_at(&ContactProblem::t_Pa, force_N_per_m);
+        reached = std::isfinite(found);
+        return reached ? found : 0.0;
+      },
+      false);
   if (!reached)
     throw UserError("{}: no shear gives a force of {:.6g} N/m; reduce it, or raise {}", key, force_N_per_m,
                     Key(mu_s_key_));
@@ -558,22 +570,24 @@ Equilibrium Statics::shear_to(double share) const {
         "change the tilt",
         tilted_.peak_ratio, tilted_.peak_x_m, name_of_ratio(share), Key(mu_s_key_));
   bool reached = true;
-  Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
-    // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
-    // that does not last until then is corrected, and the shear found again.
-    const auto& mu_s = problem.states.support.mu_s;
-    double shear = infinity;
-    for (std::size_t k = 0; k < problem.contact.size(); ++k) {
-      if (problem.contact[k] != Contact::stick || !inside.contains(problem.nodes.x_m[k])) continue;
-      const double ratio = share * mu_s[k];
-      const double excess = problem.t_Pa(k, 0) - ratio * problem.p_Pa(k, 0);
-      const double growth = problem.t_Pa(k, 1) - ratio * problem.p_Pa(k, 1) - excess;
-      if (growth > 0 && excess <= 0 && problem.p_Pa(k, -excess / growth) > 0)
-        shear = std::min(shear, -excess / growth);
-    }
-    reached = std::isfinite(shear);
-    return reached ? shear : 0.0;
-  }, true);
+  Equilibrium e = shear(
+      [&](const ContactProblem& problem, const Inside& inside) {
+        // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a
+        // state that does not last until then is corrected, and the shear found again.
+        const auto& mu_s = problem.states.support.mu_s;
+        double shear = infinity;
+        for (std::size_t k = 0; k < problem.contact.size(); ++k) {
+          if (problem.contact[k] != Contact::stick || !inside.contains(problem.nodes.x_m[k])) continue;
+          const double ratio = share * mu_s[k];
+          const double excess = problem.t_Pa(k, 0) - ratio * problem.p_Pa(k, 0);
+          const double growth = problem.t_Pa(k, 1) - ratio * problem.p_Pa(k, 1) - excess;
+          if (growth > 0 && excess <= 0 && problem.p_Pa(k, -excess / growth) > 0)
+            shear = std::min(shear, -excess / growth);
+        }
+        reached = std::isfinite(shear);
+        return reached ? shear : 0.0;
+      },
+      true);
   if (!reached)
     throw UserError("no shear brings t/p inside the interface to {}; reduce {}, or change the tilt or {}",
                     name_of_ratio(share), Key(mu_s_key_), Key("loading.edge_margin_m"));

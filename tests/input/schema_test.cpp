@@ -90,7 +90,8 @@ auto members(const Case& c) {
   return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x), tip,
                     members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
-                    members<3>(sequence), members<9>(time), members<7>(fronts), members<5>(output), members<4>(probes));
+                    members<3>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
+                    members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
@@ -259,11 +260,11 @@ TEST(Schema, DefaultsOfASequenceLetEventsComeToRestBeforeTheEdgeMovesOn) {
 
 TEST(Schema, SequencesNeedEventsThatBeginAndEndByThemselves) {
   const std::string begin = "sequence.max_events = 2\n";
-  EXPECT_THAT(error_of(begin + "event.kind = 'left'"), HasSubstr("event.kind = spontaneous"));
-  EXPECT_THAT(error_of(begin + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
-  EXPECT_THAT(error_of(begin + "time.quiet_s = inf"), HasSubstr("each event comes to rest"));
-  EXPECT_THAT(error_of(begin + "output.history_interval_s = 1e-3"), HasSubstr("at most half"));
-  EXPECT_THAT(error_of("sequence.end_s = 2"), HasSubstr("sequence.max_events > 1"));
+  EXPECT_THAT(parse_error(begin + "event.kind = 'left'"), HasSubstr("event.kind = spontaneous"));
+  EXPECT_THAT(parse_error(begin + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
+  EXPECT_THAT(parse_error(begin + "time.quiet_s = inf"), HasSubstr("each event comes to rest"));
+  EXPECT_THAT(parse_error(begin + "output.history_interval_s = 1e-3"), HasSubstr("at most half"));
+  EXPECT_THAT(parse_error("sequence.end_s = 2"), HasSubstr("sequence.max_events > 1"));
 }
 
 TEST(Schema, ForcesReadBackFromToml) {

@@ -130,6 +130,7 @@ TEST(Scorecard, RunsWithoutFrontsProveNothing) {
   for (auto& study : runs.studies)
     for (auto& point : study.outcomes)
       for (auto& o : point) o.fronts.clear();
+  runs.loaded_on.clear();
   const auto claims = claims_of(runs);
   for (const auto& [id, claim] : claims) {
     if (id == "C1" || id == "C2") continue;  // of the material and the statics
@@ -268,10 +269,7 @@ const Variant variants[] = {
        for (auto& p : r.left.fronts[0].points)
          p.v_tip_m_per_s = std::min(p.v_tip_m_per_s, 0.99 * r.left.speeds.c_S);
      }},
-    {"C24", "global friction near the local one",
-     [](auto& r) {
-       r.loaded_on[1].largest_friction = 1.2;
-     }},
+    {"C24", "global friction near the local one", [](auto& r) { r.loaded_on[1].largest_friction = 1.2; }},
 };
 
 TEST(Scorecard, ClaimsDoNotHoldForOtherRuns) {
