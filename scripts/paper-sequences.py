@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Loads the paper's plate on through many events; renews figure and table of papers/kammer2012/sequences.md."""
+"""Loads the paper's plate on; renews figure and table of papers/kammer2012/sequences.md."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ MU_K = (0.6, 1.0)
 COLOURS = dict(zip(MU_K, ("#0072b2", "#d55e00"), strict=True))
 LOCAL = 1.3  # mu_s
 EVENTS = 100
-LONG_M = 0.02  # fronts whose speeds are drawn
+LONG_M = 0.02  # of fronts whose speeds are drawn
+DRAWN = 12  # global events of which they are
 CHANGES = {
     "sequence.max_events": EVENTS,
     "loading.shear_speed_over_c_L": 1e-9,
@@ -27,8 +28,16 @@ CHANGES = {
     "output.history_interval_s": 2e-6,
     "output.snapshot_times_s": [],
 }
-#: Kammer et al. (2012), Fig. 6: V/c_L = a + b (1 - exp(-c rise)) of the fit, with its band.
-FIT_A, FIT_B, FIT_C, FIT_BAND = 0.76, 1.80, 3.05, 0.07
+
+
+@dataclass
+class Front:
+    """A long front. Arrays: [points]"""
+
+    event: int  # from 1
+    rise: np.ndarray  # of the energy density
+    speed: np.ndarray  # over c_L
+    G_over_Gamma: np.ndarray  # of the crack at rest
 
 
 @dataclass
@@ -37,33 +46,137 @@ class Loaded:
 
     mu_k: float
     sequence: slipfront.OpenSequence
-    rise: np.ndarray  # of the energy density, of points of long fronts
-    speed: np.ndarray  # over c_L
-    later: np.ndarray  # not of the first event
+    fronts: list[Front]
+
+    def column(self, name: str) -> np.ndarray:
+        return self.sequence.events[name].to_numpy()
 
     @property
-    def first_global(self) -> int:
-        return int(np.argmax(self.sequence.events.is_global.to_numpy() == 1))
+    def n_precursors(self) -> int:
+        """Events before the first in which all nodes inside slip."""
+        return int(np.argmax(self.column("is_global") == 1))
+
+
+def G_over_Gamma(event: slipfront.OpenRun, begin_x_m: float, x_m: np.ndarray, direction: int) -> np.ndarray:
+    """Along a front, by what friction took in the event; NaN beyond what is predicted."""
+    predicted = slipfront.predict_fronts(event, at_x_m=begin_x_m)
+    same_way = predicted.isel(point=(predicted.direction == direction).to_numpy())
+    if same_way.sizes["point"] == 0:
+        return np.full(len(x_m), np.nan)
+    order = np.argsort(same_way.x_m.to_numpy())
+    ratio = (same_way.G_static_J_per_m2 / same_way.fracture_energy_J_per_m2).to_numpy()
+    return np.interp(x_m, same_way.x_m.to_numpy()[order], ratio[order], left=np.nan, right=np.nan)
+
+
+def long_fronts(sequence: slipfront.OpenSequence) -> list[Front]:
+    found = []
+    for event, begin_x_m, is_global in zip(
+        sequence.runs, sequence.events.begin_x_m.to_numpy(), sequence.events.is_global.to_numpy(), strict=True
+    ):
+        number = len({f.event for f in found})
+        for i in np.unique(event.fronts.front_id) if is_global and number < DRAWN else ():
+            points = event.fronts.isel(point=(event.fronts.front_id == i).to_numpy())
+            x_m = points.x_m.to_numpy()
+            if np.ptp(x_m) < LONG_M or abs(x_m[0] - begin_x_m) > LONG_M:
+                continue
+            found.append(
+                Front(
+                    number,
+                    (points.U_r_J_per_m3 / points.U_s_J_per_m3 - 1).to_numpy(),
+                    points.v_tip_m_per_s.to_numpy() / event.info["wave_speeds"]["c_L_m_per_s"],
+                    G_over_Gamma(event, begin_x_m, x_m, int(np.sign(x_m[-1] - x_m[0]))),
+                )
+            )
+    return found
 
 
 def loaded(mu_k: float, page: Path, folder: Path) -> Loaded:
     place = folder / f"mu_k_{mu_k}"
     if not place.exists():
-        slipfront.run(page.parent / "spontaneous.toml", CHANGES | {"friction.mu_k": mu_k}, output=place, progress=False)
+        slipfront.run(
+            page.parent / "spontaneous.toml", CHANGES | {"friction.mu_k": mu_k}, output=place, progress=False
+        )
     sequence = slipfront.open(place)
     assert isinstance(sequence, slipfront.OpenSequence)
-    rise, speed, later = [], [], []
-    for k, event in enumerate(sequence.runs):
-        fronts = event.fronts
-        if "front_id" not in fronts:
-            continue
-        x_m = fronts.x_m.to_numpy()
-        for i in np.unique(fronts.front_id):
-            points = np.flatnonzero(fronts.front_id.to_numpy() == i)
-            if np.ptp(x_m[points]) < LONG_M:
-                continue
-            of_front = fronts.isel(point=points)
-            rise.append((of_front.U_r_J_per_m3 / of_front.U_s_J_per_m3 - 1).to_numpy())
-            speed.append(of_front.v_tip_m_per_s.to_numpy() / event.info["wave_speeds"]["c_L_m_per_s"])
-            later.append(np.full(len(points), k > 0))
-    return Loaded(mu_k, sequence, np.concatenate(rise), np.concatenate(speed), np.concatenate(later))
+    return Loaded(mu_k, sequence, long_fronts(sequence))
+
+
+def correlation(fronts: list[Front], name: str) -> str:
+    a = np.concatenate([getattr(f, name) for f in fronts])
+    b = np.concatenate([f.speed for f in fronts])
+    both = np.isfinite(a) & np.isfinite(b)
+    return f"{slipfront.rank_correlation(a[both], b[both]):.2f}" if both.sum() > 2 else "-"
+
+
+def table(plates: list[Loaded]) -> str:
+    text = (
+        "| mu_k | events before all slips | longest of them (mm) | largest F_S/F_N until then, over 1.3 "
+        "| later: global events | F_S/F_N where they begin | at rest | mean slip (um) "
+        "| speed with (U_r-U_s)/U_s | with G_static/Gamma |\n|---|---|---|---|---|---|---|---|---|---|\n"
+    )
+    for p in plates:
+        n = p.n_precursors
+        before, after = p.column("friction_before"), p.column("friction_after")
+        is_global = p.column("is_global") == 1
+        longest = f"{1e3 * p.column('length_m')[:n].max():.0f}" if n else "-"
+        later = is_global & (np.arange(len(before)) > n)
+        most = before[: n + 1].max()
+        text += (
+            f"| {p.mu_k} | {n} | {longest} | {most:.3f}, {most / LOCAL:.2f} "
+            f"| {later.sum()} of {len(before) - n - 1} | {np.median(before[later]):.3f} "
+            f"| {np.median(after[later]):.3f} | {1e6 * np.median(p.column('mean_slip_m')[later]):.0f} "
+            f"| {correlation(p.fronts, 'rise')} | {correlation(p.fronts, 'G_over_Gamma')} |\n"
+        )
+    return text
+
+
+def draw(plates: list[Loaded], picture: Path) -> None:
+    with matplotlib.rc_context(style.RC):
+        figure = style.new_figure(2 * style.COLUMN_MM, 110)
+        (force, extent), (rise, energy) = figure.subplots(2, 2)
+        for p in plates:
+            loading = p.sequence.loading
+            colour = COLOURS[p.mu_k]
+            force.plot(
+                1e3 * loading.shear_m,
+                loading.shear_over_normal,
+                lw=0.6,
+                color=colour,
+                label=f"mu_k = {p.mu_k}",
+            )
+            for k, (left, right) in enumerate(zip(p.column("from_x_m"), p.column("to_x_m"), strict=True)):
+                extent.plot([left, right], [p.column("friction_before")[k]] * 2, lw=0.5, color=colour)
+            extent.plot(p.column("begin_x_m"), p.column("friction_before"), ".", ms=2, color="k")
+            for f in p.fronts:
+                # The first events stand out.
+                marker = {"color": colour, "ms": 1.5} if f.event > 0 else {"color": "k", "ms": 2.5}
+                rise.plot(f.rise, f.speed, ".", **marker)
+                energy.plot(f.G_over_Gamma, f.speed, ".", **marker)
+        force.axhline(LOCAL, color="0.6", lw=0.6)
+        force.set(xlabel="displacement of the top edge (mm)", ylabel="F_S/F_N", ylim=(0, 1.4))
+        force.legend(fontsize=6)
+        extent.set(xlabel="x (m)", ylabel="F_S/F_N where an event begins")
+        rise.set(xlabel="(U_r - U_s)/U_s", ylabel="speed / c_L", xlim=(0, 6), ylim=(0, 4))
+        energy.set(xlabel="G at rest / fracture energy", ylabel="speed / c_L", xscale="log", ylim=(0, 4))
+        write_figure(picture, figure)
+
+
+def renew_page(page: Path, picture: Path, folder: Path | None) -> None:
+    checked(picture)
+    with TemporaryDirectory() as temporary:
+        plates = [loaded(mu_k, page, folder or Path(temporary)) for mu_k in MU_K]
+        draw(plates, picture)
+        renew(page, lambda text: between_marks(page, text, "table", table(plates)))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("page", type=Path, help="papers/kammer2012/sequences.md")
+    parser.add_argument("picture", type=Path)
+    parser.add_argument("--runs", type=Path, help="folder of the two sequences, or for them")
+    options = parser.parse_args()
+    return run(__file__, lambda: renew_page(options.page, options.picture, options.runs))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -101,12 +101,12 @@ def predict_fronts(
     if isinstance(case, OpenRun):
         if any(str(name).startswith("friction") for name in (*(changes or {}), *tables)):
             raise CaseError("friction of an opened run is what it came to: give its case to change friction")
-        x_m, work, coefficient = measured_friction(case)
         if energy is None or residual is None:
+            x_m, work, coefficient = measured_friction(case)
             ends = f"{x_m[0]:.4g} to {x_m[-1]:.4g} m"
             notes = [f"friction beyond {ends}, where no front broke it down, is that at these ends"]
-        energy = (x_m, work) if energy is None else energy
-        residual = (x_m, coefficient) if residual is None else residual
+            energy = (x_m, work) if energy is None else energy
+            residual = (x_m, coefficient) if residual is None else residual
         if case.is_of_sequence:
             before = tuple(case.tractions[name].to_numpy() for name in ("x_m", "t_s_Pa", "p_s_Pa"))
             at_x_m = case.info["statics"]["peak_x_m"] if at_x_m is None else at_x_m

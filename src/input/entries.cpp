@@ -627,9 +627,9 @@ void add_sequence(Entries& all) {
                "begins; 1 for a single event");
   sequence.only_with = in_sequence();
   sequence.add("end_s", &Sequence::end_s, above_or_infinite(0),
-               "no event begins after this time, at loading.shear_speed_over_c_L from the tilt on");
+               "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
-               "end with the first event in which all nodes in contact slip");
+               "end with the first event in which all nodes slip but those within loading.edge_margin_m");
 }
 
 void add_time(Entries& all) {

@@ -281,3 +281,46 @@ def test_the_page_of_a_sequence_without_an_event(interrupted):
     text = page_of(interrupted)
     assert "No event is complete." in text and 'class="plot"' not in text
     assert "still running or killed, results up to event 0" in text
+
+
+WEAKENING = """
+[plate]
+element_size_m = 2e-3
+
+[material]
+stiffness_damping_s = 1e-6
+
+[friction]
+law = "slip_weakening"
+mu_s = 0.7
+mu_k = 0.5
+d_c_m = 4e-6
+
+[event]
+kind = "spontaneous"
+
+[loading]
+critical_margin = 0.05
+
+[sequence]
+max_events = 6
+"""
+
+
+def test_extents_of_events_are_those_of_cracks_in_the_tractions_before(tmp_path):
+    sequence = slipfront.run(write_case(tmp_path, WEAKENING), output=tmp_path / "out", progress=False)
+    events = sequence.events
+    d_c_m, three_process_zones_m = 4e-6, 0.015
+    ran = np.flatnonzero(events.mean_slip_m > d_c_m)  # others stop while they nucleate
+    assert len(ran) > 1
+    for end in ("from_x_m", "to_x_m"):
+        off_m = (events[end] - events[f"predicted_{end}"]).to_numpy()[ran]
+        assert (np.abs(off_m) < three_process_zones_m).all()
+    later = sequence.runs[ran[-1]]
+    by_law = {"fracture_energy_J_per_m2": 0.2, "residual_coefficient": 0.5}
+    in_its_state = slipfront.predict_fronts(later, **by_law)
+    in_the_first = slipfront.predict_fronts(later.case, **by_law, at_x_m=later.info["statics"]["peak_x_m"])
+    assert "of the first event of the sequence" in in_the_first.attrs["notes"]
+    assert "of the first event of the sequence" not in in_its_state.attrs["notes"]
+    G = [p.G_static_J_per_m2.to_numpy().max() for p in (in_its_state, in_the_first)]
+    assert abs(G[0] / G[1] - 1) > 0.01
