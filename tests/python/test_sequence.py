@@ -322,5 +322,5 @@ def test_extents_of_events_are_those_of_cracks_in_the_tractions_before(tmp_path)
     in_the_first = slipfront.predict_fronts(later.case, **by_law, at_x_m=later.info["statics"]["peak_x_m"])
     assert "of the first event of the sequence" in in_the_first.attrs["notes"]
     assert "of the first event of the sequence" not in in_its_state.attrs["notes"]
-    G = [p.G_static_J_per_m2.to_numpy().max() for p in (in_its_state, in_the_first)]
-    assert abs(G[0] / G[1] - 1) > 0.01
+    # In the first event's state no crack runs from there.
+    assert in_its_state.attrs["starts"] and not in_the_first.attrs["starts"]
