@@ -237,9 +237,10 @@ FrontPredictor::FrontPredictor(const input::Case& given)
   if (config_.loading.method == statics::LoadingMethod::ramp)
     config_.loading.method = statics::LoadingMethod::direct;
   initial_ = make_initial_state(config_, [](auto, auto) { return true; });
-  response_ = is_held(config_)
-                  ? response_of_sample(config_, initial_)
-                  : fracture::response_of_half_spaces(bodies_of(config_), initial_.common.tractions.x_m);
+  response_ = std::make_shared<const fracture::SlipResponse>(
+      is_held(config_)
+          ? response_of_sample(config_, initial_)
+          : fracture::response_of_half_spaces(bodies_of(config_), initial_.common.tractions.x_m));
 }
 
 FracturePrediction FrontPredictor::predict(const TipFriction& friction, const std::optional<double>& x_m,
@@ -265,10 +266,10 @@ FracturePrediction FrontPredictor::predict(const TipFriction& friction, const st
   std::optional<fracture::SlipResponse> turned;
   if (force < 0) {
     for (double& t_Pa : loads.t_Pa) t_Pa = -t_Pa;
-    turned = response_;
+    turned = *response_;
     turned->p_per_slip *= -1;
   }
-  const auto& response = turned ? *turned : response_;
+  const auto& response = turned ? *turned : *response_;
   const auto patch = first_crack(config_, initial_, x_m);
   p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
   p.nucleation_length_m =

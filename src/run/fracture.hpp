@@ -2,16 +2,20 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/numbers.hpp"
 #include "fracture/prediction.hpp"
-#include "fracture/static_crack.hpp"
 #include "input/case.hpp"
 #include "record/record.hpp"
 #include "run/initial_state.hpp"
+
+namespace slipfront::fracture {
+struct SlipResponse;
+}
 
 namespace slipfront::run {
 
@@ -58,7 +62,7 @@ class FrontPredictor {
  private:
   input::Case given_, config_;
   InitialState initial_;
-  fracture::SlipResponse response_;
+  std::shared_ptr<const fracture::SlipResponse> response_;
 };
 
 /// Of one event.

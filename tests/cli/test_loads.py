@@ -151,6 +151,6 @@ def test_an_edge_that_is_held_brings_nothing_to_slip(program, coarse, of_motion)
 
 def test_a_place_inside_beyond_its_strength_is_told(program, case):
     """Slip that spreads from the edge of a flat block brings a place inside beyond mu_s first."""
-    settings = sets("plate.element_size_m=2e-3", "event.kind=none", "loading.shear_over_critical=0.99")
+    settings = sets("plate.element_size_m=1e-3", "event.kind=none", "loading.shear_over_critical=0.99")
     info = require_done(program("info", case, *settings)).stdout
     assert re.search(r"note: t is beyond mu_s p at \d+ of \d+ nodes inside: they slip at once", info)

@@ -96,7 +96,7 @@ class Study:
         self.set = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
         self.program = find_program()
         self.case = flattened(tomllib.loads(self.resolved({})))  # all its keys
-        if (n := self.case["sequence.max_events"]) != 1:
+        if (n := self.case.get("sequence.max_events", 1)) != 1:
             told = f"sequence.max_events is {n}; a study is of one event: set it to 1"
             raise DataError(f"{options.case}: {told}")
 
