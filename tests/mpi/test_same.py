@@ -223,3 +223,31 @@ def test_any_number_of_processes_goes_on(tmp_path, mpirun):
     require_done(mpirun(2, "run", "--restart", several, *often))
     require_same(one, several)
     assert run_json(several)["sessions"] == 1 + stops
+
+
+SEQUENCE = """
+[plate]
+element_size_m = 4e-3
+[event]
+kind = "spontaneous"
+[sequence]
+max_events = 2
+[time]
+interface_rows = 2
+"""
+
+
+def test_a_sequence_of_several_processes(tmp_path, mpirun):
+    """The first event is the same; energies to rounding, from which the next one grows apart."""
+    (tmp_path / "case.toml").write_text(SEQUENCE)
+    require_done(mpirun(2, "run", "case.toml", "-q", "-o", "shared"))
+    require_done(mpirun.alone("run", "case.toml", "-q", "-o", "alone"))
+    first = {}
+    for name in ("shared", "alone"):
+        with open(tmp_path / name / "events.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        assert len(rows) == 2
+        first[name] = {key: float(value) for key, value in rows[0].items() if value}
+    assert first["shared"] == pytest.approx(first["alone"], rel=1e-9)
+    event = tmp_path / "shared" / "events" / "0001"
+    require_same_bytes(event / "interface.h5", tmp_path / "alone" / "events" / "0001" / "interface.h5")
