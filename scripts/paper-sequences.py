@@ -22,7 +22,7 @@ EVENTS = 100
 LONG_M = 0.02  # of fronts whose speeds are drawn
 DRAWN = 12  # global events of which they are
 RISE_TO, FASTEST = 2.5, 3.0  # drawn; over c_L
-# The paper's fit of its Fig. 6: V/c_L = a + b exp(-c (U_r - U_s)/U_s).
+# The paper's fit of its Fig. 6: V/c_L = a + b exp(-c sqrt((U_r - U_s)/U_s)).
 FIT_A, FIT_B, FIT_C = 0.76, 1.80, 3.05
 CHANGES = {
     "sequence.max_events": EVENTS,
@@ -72,7 +72,7 @@ def G_over_Gamma(event: slipfront.OpenRun, begin_x_m: float, x_m: np.ndarray, di
 
 
 def long_fronts(sequence: slipfront.OpenSequence) -> list[Front]:
-    found = []
+    found: list[Front] = []
     for event, begin_x_m, is_global in zip(
         sequence.runs, sequence.events.begin_x_m.to_numpy(), sequence.events.is_global.to_numpy(), strict=True
     ):
@@ -156,7 +156,7 @@ def draw(plates: list[Loaded], picture: Path) -> None:
                 rise.plot(f.rise, f.speed, ".", **marker)
                 energy.plot(f.G_over_Gamma, f.speed, ".", **marker)
         x = np.linspace(0, RISE_TO, 100)
-        rise.plot(x, FIT_A + FIT_B * np.exp(-FIT_C * x), color="0.6", lw=1)
+        rise.plot(x, FIT_A + FIT_B * np.exp(-FIT_C * np.sqrt(x)), color="0.6", lw=1)
         force.axhline(LOCAL, color="0.6", lw=0.6)
         force.set(xlabel="displacement of the top edge (mm)", ylabel="F_S/F_N", ylim=(0, 1.4))
         force.legend(fontsize=6)

@@ -108,7 +108,10 @@ def predict_fronts(
             energy = (x_m, work) if energy is None else energy
             residual = (x_m, coefficient) if residual is None else residual
         if case.is_of_sequence:
-            before = tuple(case.tractions[name].to_numpy() for name in ("x_m", "t_s_Pa", "p_s_Pa"))
+            tractions = case.tractions
+            before = (
+                tractions.x_m.to_numpy(), tractions.t_s_Pa.to_numpy(), tractions.p_s_Pa.to_numpy()
+            )  # fmt: skip
             at_x_m = case.info["statics"]["peak_x_m"] if at_x_m is None else at_x_m
         case = case.case
     energies = along_x(energy, "fracture_energy_J_per_m2", above=0)

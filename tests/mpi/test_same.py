@@ -249,5 +249,5 @@ def test_a_sequence_of_several_processes(tmp_path, mpirun):
         assert len(rows) == 2
         first[name] = {key: float(value) for key, value in rows[0].items() if value}
     assert first["shared"] == pytest.approx(first["alone"], rel=1e-9)
-    event = tmp_path / "shared" / "events" / "0001"
-    require_same_bytes(event / "interface.h5", tmp_path / "alone" / "events" / "0001" / "interface.h5")
+    events = [tmp_path / name / "events" / "0001" for name in ("shared", "alone")]
+    require_same_bytes(*events, "interface.h5", "fronts.csv", "static.csv")
