@@ -39,7 +39,7 @@ double c_S_m_per_s(const Case& config) {
 
 /// Prescribed tractions are all the load there is. In a sequence the edge hardly moves during an event.
 DefaultRule shear_speed_rule() {
-  constexpr double between_events = 1e-9;
+  static constexpr double between_events = 1e-9;
   return {"loading.shear_speed_over_c_L",
           "`1e-06`; `0` with loading.method = prestress; `1e-09` in a sequence", [](const Case& c) -> Value {
             if (is_sequence(c)) return between_events;

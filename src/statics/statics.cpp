@@ -494,16 +494,16 @@ Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
   auto& [problem, shear] = settled;
   // A guess of the shear that was too large leaves slip where the edge of contact has moved away from. Where
   // such a node stays on neither side of the edge's margin, its slip counts.
-  while (sticks_inside) {
+  for (bool goes_on = sticks_inside; goes_on;) {
     const auto with_slip = problem->states;
-    if (!problem->stick_again(is_outside)) break;
-    try {
-      shear = settle_problem(*problem, final_accuracy, final_accuracy);
-    } catch (const UserError&) {
-      problem->states = with_slip;
-      shear = settle_problem(*problem, final_accuracy, final_accuracy);
-      break;
-    }
+    goes_on = problem->stick_again(is_outside);
+    if (goes_on) try {
+        shear = settle_problem(*problem, final_accuracy, final_accuracy);
+      } catch (const UserError&) {
+        problem->states = with_slip;
+        shear = settle_problem(*problem, final_accuracy, final_accuracy);
+        goes_on = false;
+      }
   }
   if (solver_->iterates()) last_ = problem->states;
 
