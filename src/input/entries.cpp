@@ -626,8 +626,9 @@ void add_sequence(Entries& all) {
                "events at most: after each the top edge moves on, through static equilibria, until the next "
                "begins; 1 for a single event");
   sequence.only_with = in_sequence();
-  sequence.add("end_s", &Sequence::end_s, above_or_infinite(0),
-               "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
+  sequence.add(
+      "end_s", &Sequence::end_s, above_or_infinite(0),
+      "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
 }
