@@ -185,9 +185,9 @@ OF_SEQUENCES = (
     Quantity("n_events", "1", "events of the sequence"),
     Quantity("n_global_events", "1", "events in which all nodes inside slip"),
     Quantity("first_global_event", "1", "number of the first global event"),
-    Quantity("largest_friction", "1", "largest F_S/F_N at which an event begins, up to the first global one"),
+    Quantity("largest_friction", "1", "largest F_S/F_N up to the first global event"),
     Quantity("friction_at_rest_median", "1", "median F_S/F_N at rest after global events"),
-    Quantity("longest_precursor_m", "m", "longest slipping length of an event before the first global one"),
+    Quantity("longest_precursor_m", "m", "longest event before the first global one"),
     Quantity("global_mean_slip_median_m", "m", "median mean slip of global events"),
     Quantity("imbalance_over_largest_energy", "1", "imbalance of energy over the largest term"),
 )
