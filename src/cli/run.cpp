@@ -194,8 +194,6 @@ void print_event(std::size_t number, const record::SequenceEvent& e) {
 
 void run_sequence(const RunArguments& options, results::ResultFolder& folder,
                   const std::optional<input::CaseFile>& given) {
-  if (options.session.shared_states)
-    throw UserError("slipfront: --state-dir is of runs of one event; leave it out of a sequence");
   const auto hooks = cli::hooks(options.quiet);
   const run::EventDone done = [&](std::size_t number, const record::SequenceEvent& event) {
     if (!options.quiet) print_event(number, event);

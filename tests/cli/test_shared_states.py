@@ -29,6 +29,16 @@ def test_only_runs_of_one_plate_and_strength_share(program, coarse, tmp_path):
     assert len(states(tmp_path)) == 2
 
 
+def test_a_sequence_shares_none(program, coarse, tmp_path):
+    """Its first state is its own."""
+    case = [coarse, *sets("event.kind=spontaneous", "sequence.max_events=2")]
+    for out, options in (("alone", ()), ("shared", SHARED)):
+        require_done(program("run", *case, "-o", out, *options))
+    assert not (tmp_path / "s").exists()
+    for name in ("events.csv", "loading.csv", "events/0002/interface.h5"):
+        assert (tmp_path / "alone" / name).read_bytes() == (tmp_path / "shared" / name).read_bytes()
+
+
 def test_a_damaged_state_is_told_and_solved_again(program, coarse, tmp_path):
     require_done(program("run", coarse, "-o", "first", *SHARED))
     (file,) = states(tmp_path)

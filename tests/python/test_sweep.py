@@ -9,12 +9,13 @@ import shutil
 import signal
 import subprocess
 import sys
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+import slipfront
 from common import HANG_S, wait_until
 from distributed import LocalCluster
 from slipfront.figures.__main__ import main as draw_figures
@@ -23,7 +24,7 @@ from slipfront.folder import verify_checksums
 from slipfront.sweep import maps, notebook, report
 from slipfront.sweep.command import main, share_of
 from slipfront.sweep.definition import Sweep, lines_of, read_sweep
-from slipfront.sweep.folder import as_json, has_value
+from slipfront.sweep.folder import as_json, has_value, is_done, place_of, read_definition, thin_out
 from slipfront.sweep.needs import CHEAP, Needs, require_disk, require_memory
 from slipfront.sweep.outcome import QUANTITIES, read_outcome
 from slipfront.sweep.points import folder_name, grid, sample, zipped
@@ -681,6 +682,143 @@ def test_medians_of_a_crack_are_those_beyond_the_trigger_where_its_breakdown_end
     assert found() == [2, 2, 0.2]
 
 
+# --- Sequences of events
+
+SEQUENCE = ["--set", "plate.element_size_m=4e-3", "--set", "event.kind=spontaneous"]
+THREE_EVENTS = [*SEQUENCE, "--set", "sequence.max_events=3"]
+SEQUENCES = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "material.stiffness_damping_s=1e-7,4e-7"]
+
+
+def test_a_sweep_of_sequences_has_the_numbers_of_their_events(case, capsys):
+    assert main([str(case), *SEQUENCES, *THREE_EVENTS, "-o", "out"]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert "of a sequence time and disk are those of one event" in printed[0]
+    assert printed[1].startswith("note: 4 runs have notes") and printed[2].split()[2:4] == [
+        "events",
+        "global",
+    ]
+    assert verify_checksums(Path("out")) == []
+    data = notebook.open_sweep("out")
+    assert dict(data.sizes) == {"mu_k": 2, "stiffness_damping_s": 2}
+    for row in rows_of():
+        sequence = slipfront.open(Path("out", row["folder"]))
+        events = sequence.events
+        before = events.friction_before.cumulative("event").max()
+        are_global = events.is_global == 1
+        first = events.event[are_global].min().item()
+        assert row["n_events"] == "3" and int(row["n_global_events"]) == are_global.sum()
+        assert int(row["first_global_event"]) == first
+        earlier = events.length_m[events.event < first]
+        for name, value in (
+            ("largest_friction", before.sel(event=first)),
+            ("friction_at_rest_median", events.friction_after[are_global].median()),
+            ("longest_precursor_m", max(earlier.to_numpy(), default=0)),
+            ("global_mean_slip_median_m", events.mean_slip_m[are_global].median()),
+            ("imbalance_over_largest_energy", sequence.info["imbalance_over_largest_energy"]),
+        ):
+            at = data[name].sel({key: float(row[c.attrs["key"]]) for key, c in data.coords.items()})
+            assert at == value and row[name] == f"{float(value):.12g}"
+        notes = [run.info["warnings"] for run in sequence.runs]
+        assert row["message"] in notes[0] and all(row["message"] in other for other in notes)
+    assert "n_fronts" not in data and "end_reason" not in rows_of()[0]
+    # Friction at rest is the higher the higher mu_k is.
+    assert (data.friction_at_rest_median.sel(mu_k=0.5) < data.friction_at_rest_median.sel(mu_k=0.7)).all()
+    drawn = maps.draw(Path("out")).figure.findobj(lambda a: a.get_gid() == "friction_at_rest_median")
+    cells = np.ravel(drawn[0].get_array())
+    assert cells.tolist() == data.friction_at_rest_median.to_numpy().ravel().tolist()
+    html = report.sweep_section(data, Path("out"), Path("out/report.html"))
+    assert "median mean slip of global events" in html and "fronts" not in report.same_everywhere(
+        report.sweep_data(data, Path("out"), Path("out/report.html"))
+    )
+
+
+@pytest.mark.parametrize("keep", ["all", "tables"])
+def test_sequences_and_runs_are_points_of_one_sweep(case, keep):
+    """A column of the other kind is empty. What is done is not run again; a damaged event is."""
+    arguments = [str(case), "--vary", "sequence.max_events=1,2", *SEQUENCE, "--keep", keep, "-o", "out", "-q"]
+    assert main(arguments) == 0
+    run, sequence = rows_of()
+    assert (sequence["n_events"], sequence["n_fronts"], sequence["longest_front_slip"]) == ("2", "", "")
+    assert run["n_events"] == "" and run["n_fronts"] != "" and run["longest_front_slip"] != ""
+    assert verify_checksums(Path("out")) == []
+    assert len(list(Path("out").rglob("interface.h5"))) == (3 if keep == "all" else 0)
+    place = Path("out", sequence["folder"])
+    assert slipfront.open(place).runs[1].status == "complete"
+    before = states_of()
+    assert main(["--restart", "out", "-q"]) == 0
+    assert states_of() == before
+    fronts = place / "events/0002/fronts.csv"
+    whole = fronts.read_bytes()
+    fronts.write_bytes(whole[:-10])
+    assert main(["--restart", "out", "-q"]) == 0
+    assert fronts.read_bytes() == whole and rows_of() == [run, sequence]
+
+
+def lines_under(folder):
+    """Lines of each file, in any order."""
+    return {path: sorted(path.read_bytes().split(b"\n")) for path in folder.rglob("*") if path.is_file()}
+
+
+def test_thinning_out_a_sequence_may_be_cut_off(case, monkeypatch):
+    """At each file that it writes or removes; no list is wrong meanwhile, and the next one goes on."""
+    assert main([str(case), "--vary", "sequence.max_events=2", *SEQUENCE, "-o", "out", "-q"]) == 0
+    (point,) = read_definition(Path("out")).points()
+    place = place_of(Path("out"), point)
+    shutil.copytree(place, "whole")
+    thin_out(place)
+    thinned = lines_under(place)
+    n_cut = 0
+    for n_steps in range(100):
+        shutil.rmtree(place)
+        shutil.copytree("whole", place)
+        left = iter(range(n_steps))
+
+        def cut(step, left=left):
+            def stepped(*arguments, **options):
+                if next(left, None) is None:
+                    raise KeyboardInterrupt
+                return step(*arguments, **options)
+
+            return stepped
+
+        with monkeypatch.context() as patched:
+            patched.setattr(os, "replace", cut(os.replace))
+            patched.setattr(Path, "unlink", cut(Path.unlink))
+            with suppress(KeyboardInterrupt):
+                thin_out(place)
+                break
+        n_cut += 1
+        assert is_done(Path("out"), point)
+        thin_out(place)
+        assert lines_under(place) == thinned
+    assert n_cut > 4
+
+
+def write_events(place, rows):
+    """A sequence whose events are global or not, have a length, and friction before and after."""
+    place.mkdir()
+    lines = [f"{k},{','.join(map(str, row))},1e-6\n" for k, row in enumerate(rows, start=1)]
+    head = "event,is_global,length_m,friction_before,friction_after,mean_slip_m\n"
+    (place / "events.csv").write_text(head + "".join(lines))
+    (place / "sequence.json").write_text(json.dumps({"imbalance_over_largest_energy": 0}))
+    cells = read_outcome(place)
+    return [cells[f"{name}"] for name in ("first_global_event", "largest_friction", "longest_precursor_m",
+                                          "friction_at_rest_median", "n_global_events")]  # fmt: skip
+
+
+def test_precursors_come_before_the_first_global_event(tmp_path):
+    one, two = (0, 0.03, 0.6, 0.59), (0, 0.05, 0.7, 0.68)
+    whole, next_one, later = (1, 0.2, 0.8, 0.5), (0, 0.1, 0.9, 0.89), (1, 0.2, 0.6, 0.4)
+    all_of_them = [one, two, whole, next_one, later]
+    assert write_events(tmp_path / "all", all_of_them) == [3, 0.8, 0.05, pytest.approx(0.45), 2]
+    for name, rows, found in (
+        ("precursors", [two, one], [np.nan, 0.7, 0.05, np.nan, 0]),
+        ("at_once", [whole, next_one], [1, 0.8, 0, 0.5, 1]),
+        ("none", [], [np.nan, np.nan, 0, np.nan, 0]),
+    ):
+        np.testing.assert_array_equal(write_events(tmp_path / name, rows), found)
+
+
 # --- Printed
 
 
@@ -753,6 +891,37 @@ def test_runs_end_when_their_sweep_is_killed(case, tmp_path):
     (place,) = (out / "points").iterdir()
     wait_until(lambda: '"interrupted"' in (place / "unfinished/run.json").read_text())
     assert list(place.glob("unfinished/state/checkpoint-*.bin"))
+
+
+def test_an_interrupted_sweep_goes_on_with_its_sequences(case, tmp_path):
+    """Between events or in one; the results are those of a sequence that was never stopped."""
+    settings = [*SEQUENCE[2:], "--set", "plate.element_size_m=2e-3", "--set", "sequence.max_events=8"]
+    process = started(case, case, "--vary", "friction.mu_k=0.5", *settings, "-o", "out")
+    place = tmp_path / "out/points/mu_k=0.5"
+    wait_until((place / "unfinished/events/0001/checksums.sha256").exists, process)
+    os.killpg(process.pid, signal.SIGINT)
+    process.communicate(timeout=HANG_S)
+    assert process.returncode == 130
+    n_done = len(list(place.glob("unfinished/events/*/checksums.sha256")))
+    assert 1 <= n_done < 8
+    assert main(["--restart", "out", "-q"]) == 0
+    assert slipfront.open(place).info["sessions"] == 2
+    program = os.environ["SLIPFRONT_PROGRAM"]
+    alone = [program, "run", case, "--set", "friction.mu_k=0.5", *settings, "-o", "alone", "-q"]
+    subprocess.run(alone, check=True)
+    for name in ("events.csv", "loading.csv", "events/0001/fronts.csv", "events/0008/interface.h5"):
+        assert (place / name).read_bytes() == Path("alone", name).read_bytes()
+
+
+def test_a_sequence_that_blew_up_is_not_run_again(case, capsys):
+    """Its other points are."""
+    assert main([str(case), *UNSTABLE, *THREE_EVENTS, "-o", "out", "-q"]) == 1
+    good, bad = rows_of()
+    assert (good["status"], good["n_events"], bad["status"], bad["n_events"]) == ("done", "3", "failed", "")
+    assert "event 1" in bad["message"]
+    before = states_of()
+    assert main(["--restart", "out", "-q"]) == 1
+    assert states_of() == before and rows_of()[0] == good and rows_of()[1]["status"] == "failed"
 
 
 # --- Maps and page

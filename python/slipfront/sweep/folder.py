@@ -28,7 +28,7 @@ from slipfront.files import (
     read_text,
     read_toml,
 )
-from slipfront.folder import LIST, UNFINISHED, inside, problem, read_list, sha256
+from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, inside, problem, read_list, sha256
 from slipfront.sweep.definition import ENTRIES, Sweep, flattened, is_value
 from slipfront.sweep.points import Point
 from slipfront.sweep.program import version_of
@@ -166,14 +166,24 @@ def has_value(case: dict[str, Any], key: str, value: Value) -> bool:
     return case.get(key) in (wanted, value)
 
 
-def what_is_wrong(place: Path, point: Point) -> str | None:
-    """Why a folder does not hold a point's complete results, in one line; None where it does."""
+def damage(place: Path) -> str | None:
+    """What is wrong with a folder's files, also with those of the events of a sequence, in one line."""
     sums = read_list(place) if is_folder(place) else None
     if sums is None:
         return "no results"
     for name, expected in sums.items():
-        if wrong := problem(place, name, expected):
+        wrong = problem(place, name, expected)
+        if wrong is None and Path(name).name == LIST:
+            wrong = damage((place / name).parent)
+        if wrong:
             return wrong
+    return None
+
+
+def what_is_wrong(place: Path, point: Point) -> str | None:
+    """Why a folder does not hold a point's complete results, in one line; None where it does."""
+    if wrong := damage(place):
+        return wrong
     case = flattened(read_toml(place / CASE))
     for key, value in point.values.items():
         if not has_value(case, key, value):
@@ -189,12 +199,22 @@ def is_done(folder: Path, point: Point) -> bool:
         return False
 
 
+def write_list(place: Path, sums: dict[str, str]) -> None:
+    """Where it is not as it should be."""
+    if sums != read_list(place):
+        write_whole(place / LIST, "".join(f"{value}  {name}\n" for name, value in sums.items()))
+
+
 def thin_out(place: Path) -> None:
-    """Takes histories and snapshots out of a point's results; its list is shortened first."""
-    sums = read_list(place) or {}
-    kept = {name: value for name, value in sums.items() if name not in LEFT_OUT}
-    if kept != sums:
-        write_whole(place / LIST, "".join(f"{value}  {name}\n" for name, value in kept.items()))
+    """Takes histories and snapshots out of a point's results and of its events'; lists are shortened first.
+    While those of events change, the point's names none of them: an end meanwhile leaves no list wrong."""
+    kept = {name: value for name, value in (read_list(place) or {}).items() if name not in LEFT_OUT}
+    events = sorted(inside(place, "events").glob(f"*/{LIST}"))
+    if any(not (read_list(event.parent) or {}).keys().isdisjoint(LEFT_OUT) for event in events):
+        write_list(place, {name: value for name, value in kept.items() if Path(name).name != LIST})
+    for event in events:
+        thin_out(inside(place, "events", event.parent.name))
+    write_list(place, kept | {event.relative_to(place).as_posix(): sha256(event) for event in events})
     for name in LEFT_OUT:
         (place / name).unlink(missing_ok=True)
 
@@ -206,10 +226,13 @@ def failure_of(folder: Path, point: Point) -> str | None:
 
 
 def blew_up(place: Path) -> str | None:
-    """The reason of a run that blew up, and would do so again."""
-    file = place / UNFINISHED / "run.json"
-    try:
-        info = read_json_table(file) if exists(file) else {}
-    except DataError:
-        return None
-    return str(info.get("reason")) if info.get("status") == "blew_up" else None
+    """The reason of a run or a sequence that blew up, and would do so again."""
+    for name in (RUN, SEQUENCE):
+        file = place / UNFINISHED / name
+        try:
+            info = read_json_table(file) if exists(file) else {}
+        except DataError:
+            continue
+        if info.get("status") == "blew_up":
+            return str(info.get("reason"))
+    return None

@@ -37,7 +37,8 @@ if TYPE_CHECKING:
 
 #: What is drawn, in this order.
 SHOWN = ("longest_front_slip", "longest_front_end", "longest_front_v_tip_median_over_c_L",
-         "v_tip_largest_over_c_L", "slipped_share", "friction_work_J_per_m")  # fmt: skip
+         "v_tip_largest_over_c_L", "slipped_share", "friction_work_J_per_m", "n_global_events",
+         "largest_friction", "friction_at_rest_median", "longest_precursor_m")  # fmt: skip
 COLOURS = ("#0072b2", "#d55e00", "#e8c35a", "#117733", "#dddddd")  # of words
 COLUMNS = 2
 PANEL_MM = 52.0
@@ -218,10 +219,11 @@ def fixed(data: xr.Dataset, keys: list[str]) -> str:
 
 
 def draw(folder: Path, shown: tuple[str, ...] = SHOWN) -> Drawing:
-    """Panels of results over the first two keys that vary, the first one up; of a single key over it. Other
-    keys of a grid are at their first value."""
+    """Panels of results that the table has over the first two keys that vary, the first one up; of a single
+    key over it. Other keys of a grid are at their first value."""
     data = read_dataset(folder)
     keys = list(keys_of(data))
+    shown = tuple(name for name in shown if name in data)
     same = {name: told for name in shown if (told := constant(data[name])) is not None}
     shown = tuple(name for name in shown if name not in same)
     if not shown:

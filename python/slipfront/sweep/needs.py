@@ -32,14 +32,17 @@ class Needs:
     memory_bytes: float  # of the runs at a time
     disk_bytes: float
     time_s: float  # of all runs one after the other
+    of_events: bool = False  # whether disk and time of a point may be those of one event of a sequence
 
     @property
     def words(self) -> str:
         time_s = self.time_s / max(self.n_at_once, 1)
         time = f"{time_s:.0f} s" if time_s < 100 else f"{time_s / 60:.0f} min"
+        of_events = "; of a sequence time and disk are those of one event" if self.of_events else ""
         return (
             f"{self.n_points} runs, {self.n_at_once} at a time: about {time}, "
             f"{self.memory_bytes / GIGA:.2g} GB of memory, {self.disk_bytes / GIGA:.2g} GB on disk at most"
+            f"{of_events}"
         )
 
 
@@ -90,6 +93,7 @@ def needs_of(sweep: Sweep, program: Path, points: list[Point], workers: int) -> 
         memory_bytes=n * max((cost.memory_bytes for cost in each), default=0),
         disk_bytes=sum(disk if sweep.keep == "all" else disk[:n]) + TABLE_BYTES * len(points),
         time_s=sum(cost.time_s for cost in each),
+        of_events=any(cost.is_sequence for cost in each),
     )
 
 

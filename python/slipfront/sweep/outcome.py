@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is read off one run for the table: from run.json, fronts.csv, static.csv and the resolved case, by the
-definitions of docs/theory.md. Fronts count from where they leave the trigger zone or the nucleation patch."""
+definitions of docs/theory.md. Fronts count from where they leave the trigger zone or the nucleation patch.
+Of a sequence of events it is read off sequence.json and events.csv."""
 
 from __future__ import annotations
 
@@ -12,8 +13,19 @@ from typing import Any
 import numpy as np
 
 from slipfront.files import DataError, is_number, number, read_json_table, read_toml
-from slipfront.folder import result_file
-from slipfront.read import SPEED_KINDS, Front, entry, median, ratio, read_fracture, read_fronts, read_static
+from slipfront.folder import RUN, SEQUENCE, result_file
+from slipfront.read import (
+    SPEED_KINDS,
+    Front,
+    entry,
+    is_sequence,
+    median,
+    ratio,
+    read_columns,
+    read_fracture,
+    read_fronts,
+    read_static,
+)
 
 Cell = float | int | str
 Interval = tuple[float, float]
@@ -136,7 +148,7 @@ class Quantity:
     words: tuple[str, ...] = ()
 
 
-QUANTITIES = (
+OF_RUNS = (
     Quantity("n_fronts", "1", "fronts that run beyond the trigger zone"),
     Quantity("n_arrested", "1", "fronts that end by arrest"),
     Quantity("v_tip_largest_over_c_L", "1", "largest V_tip/c_L at any node of any front"),
@@ -169,6 +181,17 @@ QUANTITIES = (
     Quantity("end_s", "s", "time at the end of the event"),
     Quantity("end_reason", "", "why the event ended", ("end_time", "quiet")),
 )  # fmt: skip
+OF_SEQUENCES = (
+    Quantity("n_events", "1", "events of the sequence"),
+    Quantity("n_global_events", "1", "events in which all nodes inside slip"),
+    Quantity("first_global_event", "1", "number of the first global event"),
+    Quantity("largest_friction", "1", "largest F_S/F_N up to the first global event"),
+    Quantity("friction_at_rest_median", "1", "median F_S/F_N at rest after global events"),
+    Quantity("longest_precursor_m", "m", "longest event before the first global one"),
+    Quantity("global_mean_slip_median_m", "m", "median mean slip of global events"),
+    Quantity("imbalance_over_largest_energy", "1", "imbalance of energy over the largest term"),
+)
+QUANTITIES = (*OF_RUNS, *OF_SEQUENCES)
 
 
 def undefined_or(found: Any) -> float:
@@ -212,7 +235,7 @@ def of_longest(run: Run) -> dict[str, Cell]:
 
 
 def measured(run: Run) -> dict[str, Cell]:
-    """By the names of QUANTITIES; NaN where undefined."""
+    """By the names of OF_RUNS; NaN where undefined."""
     slipped_m = length_of([part for front in run.fronts for part in run.path(front)])
     whole_m = length_of(without(run.contact_m, run.driven_m))
     ends = [name for name, direction in (("left", -1), ("right", 1)) if run.is_reached(direction)]
@@ -223,7 +246,7 @@ def measured(run: Run) -> dict[str, Cell]:
         for term in ("strain", "kinetic", "friction_work", "trigger_work", "damping_work")
     }
     cells: dict[str, Cell] = {
-        **{quantity.name: np.nan for quantity in QUANTITIES},
+        **{quantity.name: np.nan for quantity in OF_RUNS},
         **of_longest(run),
         "n_fronts": len(run.fronts),
         "n_arrested": sum(run.told(front, "end") == "arrest" for front in run.fronts),
@@ -280,7 +303,7 @@ def heard_zones(case: dict[str, Any], file: Path, static: dict[str, np.ndarray])
 
 
 def waves_over_c_L(file: Path) -> dict[str, float]:
-    """The plate's wave speeds by run.json, ascending."""
+    """The plate's wave speeds by run.json or sequence.json, ascending."""
     info = read_json_table(result_file(file))
     speeds = {wave: number(file, info, f"wave_speeds.{wave}_m_per_s") for wave in ("c_R", "c_S", "c_L")}
     return {f"{wave}_over_c_L": speed / speeds["c_L"] for wave, speed in speeds.items()}
@@ -304,6 +327,37 @@ def read_run(place: Path) -> Run:
     )
 
 
+def read_sequence(place: Path) -> dict[str, Cell]:
+    """By the names of OF_SEQUENCES; NaN where undefined."""
+    names = ("is_global", "length_m", "mean_slip_m", "friction_before", "friction_after")
+    events = read_columns(place / "events.csv", names)
+    info = read_json_table(result_file(place / SEQUENCE))
+    is_global = events["is_global"] == 1
+    n_before = int(np.argmax(is_global)) if is_global.any() else len(is_global)
+    return {
+        "n_events": len(is_global),
+        "n_global_events": int(is_global.sum()),
+        "first_global_event": n_before + 1 if is_global.any() else np.nan,
+        "largest_friction": float(max(events["friction_before"][: n_before + 1], default=np.nan)),
+        "friction_at_rest_median": median(events["friction_after"][is_global]),
+        "longest_precursor_m": float(max(events["length_m"][:n_before], default=0.0)),
+        "global_mean_slip_median_m": median(events["mean_slip_m"][is_global]),
+        "imbalance_over_largest_energy": undefined_or(info.get("imbalance_over_largest_energy")),
+    }
+
+
+def teller(place: Path) -> Path:
+    """The file that tells of a run or a sequence."""
+    return place / (SEQUENCE if is_sequence(place) else RUN)
+
+
+def notes_on(place: Path) -> list[str]:
+    """Those on a run; of a sequence those on each of its events, which are of the case."""
+    told = [place / RUN] if not is_sequence(place) else sorted(place.glob(f"events/*/{RUN}"))
+    first, *others = [read_json_table(file).get("warnings", []) for file in told] or [[]]
+    return [note for note in first if all(note in notes for notes in others)]
+
+
 def read_outcome(place: Path) -> dict[str, Cell]:
-    """By the names of QUANTITIES."""
-    return measured(read_run(place))
+    """By the names of OF_RUNS or OF_SEQUENCES."""
+    return read_sequence(place) if is_sequence(place) else measured(read_run(place))

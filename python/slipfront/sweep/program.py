@@ -67,11 +67,12 @@ def version_of(program: Path) -> str:
 
 @dataclass(frozen=True)
 class Cost:
-    """What `slipfront info` expects of a run."""
+    """What `slipfront info` expects of a run; of a sequence disk and time are those of one event."""
 
     memory_bytes: float
     disk_bytes: float
     time_s: float
+    is_sequence: bool
 
 
 def cost_of(program: Path, case: Path, settings: Iterable[str]) -> Cost:
@@ -83,4 +84,6 @@ def cost_of(program: Path, case: Path, settings: Iterable[str]) -> Cost:
         if found is None:
             raise DataError(f"{program}: `info` tells no {name}: it is of another version")
         numbers.append(float(found[1]) * scale)
-    return Cost(*numbers)
+    memory_bytes, disk_bytes, time_s = numbers
+    is_sequence = re.search(r"^sequence\b", told, re.MULTILINE) is not None
+    return Cost(memory_bytes, disk_bytes, time_s, is_sequence)

@@ -65,7 +65,7 @@ def report_of(folder: Path, place: str, page: Path) -> str | None:
 
 
 def results_of(data: xr.Dataset) -> list[Quantity]:
-    """Those that the table has, which may be of an earlier version."""
+    """Those that the table has: of runs, of sequences, or of an earlier version."""
     return [q for q in QUANTITIES if q.name in data]
 
 

@@ -9,11 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from slipfront.files import DataError, exists, read_json_table
+from slipfront.files import DataError, exists
 from slipfront.folder import LIST, located, publication, result_file, sha256
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
-from slipfront.sweep.outcome import QUANTITIES, Cell, read_outcome, waves_over_c_L
+from slipfront.sweep.outcome import (
+    OF_RUNS,
+    QUANTITIES,
+    Cell,
+    notes_on,
+    read_outcome,
+    teller,
+    waves_over_c_L,
+)
 from slipfront.sweep.points import Point, short_names
 from slipfront.sweep.values import as_array, text_of, values_of
 from slipfront.sweep.work import DONE, FAILED
@@ -37,7 +45,14 @@ PRINTED = {
     "longest_front_end": "end",
     "slipped_share": "slipped",
     "reached_ends": "reached",
+    "n_events": "events",
+    "n_global_events": "global",
+    "first_global_event": "first_global",
+    "largest_friction": "F_S/F_N",
+    "friction_at_rest_median": "at_rest",
+    "longest_precursor_m": "precursor_m",
 }
+OF_LONGEST = "longest_front_slip"
 TEXTS = {
     "status": "whether the run came to its end",
     "message": "why a point has no results, or the notes on its run",
@@ -53,7 +68,7 @@ def row_of(folder: Path, point: Point) -> dict[str, Cell]:
     try:
         wrong = places.what_is_wrong(place, point)
         if wrong is None:
-            notes = "; ".join(read_json_table(place / "run.json").get("warnings", []))
+            notes = "; ".join(notes_on(place))
             return row | {"status": DONE, "message": notes} | read_outcome(place)
     except DataError as error:
         wrong = str(error)
@@ -62,12 +77,14 @@ def row_of(folder: Path, point: Point) -> dict[str, Cell]:
 
 
 def table_of(sweep: Sweep, rows: list[dict[str, Cell]]) -> pd.DataFrame:
-    """A row per point: folder, values of the keys, status, quantities, message."""
+    """A row per point: folder, values of the keys, status, quantities, message. The quantities are those of
+    runs, of sequences, or both, as the points are."""
     import pandas as pd
 
-    names = ["folder", *sweep.vary, "status", *(q.name for q in QUANTITIES), "message"]
+    quantities = [q for q in QUANTITIES if any(q.name in row for row in rows)] or OF_RUNS
+    names = ["folder", *sweep.vary, "status", *(q.name for q in quantities), "message"]
     table = pd.DataFrame(rows, columns=names)
-    for q in QUANTITIES:
+    for q in quantities:
         cells = [row.get(q.name, "" if q.words else np.nan) for row in rows]
         table[q.name] = pd.Series(cells, dtype=object if q.words else float)
     return table
@@ -76,7 +93,7 @@ def table_of(sweep: Sweep, rows: list[dict[str, Cell]]) -> pd.DataFrame:
 def table_lines(table: pd.DataFrame, folder: Path) -> list[str]:
     """The keys that vary and what is asked first, a line per point of the first ones."""
     keys = list(table.columns[1 : table.columns.get_loc("status")])
-    heads = short_names(keys) | {"status": "status"} | PRINTED
+    heads = short_names(keys) | {"status": "status"} | {n: head for n, head in PRINTED.items() if n in table}
     if (table.status == DONE).all():
         del heads["status"]
     shown = table[list(heads)].rename(columns=heads).head(MOST_ROWS)
@@ -85,7 +102,9 @@ def table_lines(table: pd.DataFrame, folder: Path) -> list[str]:
     )
     n_noted = int(((table.status == DONE) & (table.message != "")).sum())
     lines = [f"note: {n_noted} runs have notes: message in {folder / TABLE}"] if n_noted else []
-    lines += ["slip, length_m, V_tip/c_L (median) and end are of the longest front:", *text.split("\n")]
+    if OF_LONGEST in heads:
+        lines.append("slip, length_m, V_tip/c_L (median) and end are of the longest front:")
+    lines += text.split("\n")
     if len(table) > MOST_ROWS:
         lines.append(f"... {len(table) - MOST_ROWS} more in {folder / TABLE}")
     return lines
@@ -111,7 +130,11 @@ def dataset(sweep: Sweep, table: pd.DataFrame, program: str, waves: dict[str, fl
         name: (name if is_grid else "point", columns[key], attributes(unit_of(key), key, key=key))
         for key, name in short.items()
     }
-    attrs = {q.name: attributes(q.unit, q.long_name, words=" ".join(q.words)) for q in QUANTITIES}
+    attrs = {
+        q.name: attributes(q.unit, q.long_name, words=" ".join(q.words))
+        for q in QUANTITIES
+        if q.name in table
+    }
     attrs |= {name: attributes("", long_name) for name, long_name in TEXTS.items()}
     variables = {}
     for name, told in attrs.items():
@@ -141,7 +164,7 @@ def collect(folder: Path, sweep: Sweep, program: str) -> pd.DataFrame:
     table = table_of(sweep, [row_of(folder, point) for point in sweep.points()])
     done = table.folder[table.status == DONE]
     varies = any(key.startswith("material.") for key in sweep.vary)
-    waves = {} if varies or done.empty else waves_over_c_L(folder / done.iloc[0] / "run.json")
+    waves = {} if varies or done.empty else waves_over_c_L(teller(folder / done.iloc[0]))
     publish(folder, table, dataset(sweep, table, program, waves))
     return table
 
