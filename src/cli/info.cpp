@@ -247,7 +247,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_costs(info, list);
   if (info.shared) add_shared(*info.shared, list);
   if (info.loads) add_loads(*info.loads, list);
-  if (const double speed_m_per_s = run::top_speed_m_per_s(config); speed_m_per_s > 0)
+  if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
                          speed_m_per_s, speed_m_per_s * config.time.end_s));

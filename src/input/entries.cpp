@@ -293,6 +293,10 @@ Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
           is_overstressed};
 }
+Condition direct() {
+  return {Message("{} = direct", Key("loading.method")),
+          [](const Case& c) { return c.loading.method == LoadingMethod::direct; }};
+}
 Condition loaded_on() {
   return {Message("{} = direct, {} = spontaneous and a {} without a state", Key("loading.method"),
                   Key("event.kind"), Key("friction.law")),
@@ -483,6 +487,15 @@ void add_loading(Entries& all) {
   loading.optional(
       "shear_over_critical", &Loading::shear_over_critical, {0, 1, true, false}, 0.9,
       "the same sum over the critical one, at which t/p first reaches mu_s inside, instead of the margin");
+}
+
+void add_pusher(Entries& all) {
+  Table loading(all, "loading", [](auto& config) -> auto& { return config.plate.pusher; }, Stage::statics);
+  loading.only_with = direct();
+  loading.add("pusher_from_m", &mesh::Pusher::from_m, at_least(0), "with pusher_to_m: the height from which");
+  loading.add("pusher_to_m", &mesh::Pusher::to_m, at_least(0),
+              "and to which the left side is pushed to +x instead of the top edge, which then moves freely along "
+              "x; nodes there do not move along x by themselves, and the pusher stays during an event; 0: none");
 }
 
 void add_prestress(Entries& all) {
@@ -705,6 +718,7 @@ Entries make_common_entries() {
   add_material(all);
   add_base(all);
   add_loading(all);
+  add_pusher(all);
   add_prestress(all);
   add_friction(all);
   add_event(all);

@@ -364,6 +364,24 @@ void check_duration(const Case& config) {
 
 }  // namespace
 
+void check_pusher(const Case& config) {
+  const auto& [from_m, to_m] = config.plate.pusher;
+  if (from_m == 0 && to_m == 0) return;
+  const Key from("loading.pusher_from_m"), to("loading.pusher_to_m");
+  const double h_m = config.plate.element_size_m;
+  if (!(from_m >= h_m && to_m >= from_m + h_m && to_m <= config.plate.height_m * (1 + 1e-9)))
+    throw UserError(
+        "{} = {:g} m and {} = {:g} m must lie an element or more apart, between {:g} m, an element above the "
+        "interface, and {} = {:g} m",
+        from, from_m, to, to_m, h_m, Key("plate.height_m"), config.plate.height_m);
+  if (config.plate.sides != Sides::free)
+    throw UserError("{} > 0 pushes at a side, which needs {} = free", to, Key("plate.sides"));
+  if (config.loading.solver == statics::StaticSolver::iterative)
+    throw UserError("{} > 0 is solved by a factorisation; choose {} = direct or auto", to, Key("loading.solver"));
+  if (config.time.precision == motion::Precision::single_precision)
+    throw UserError("{} > 0 needs {} = double", to, Key("time.precision"));
+}
+
 /// What makes the end of an event known, and the places at which its nodes have come to rest.
 void check_sequence(const Case& config) {
   if (!is_sequence(config)) return;
@@ -401,6 +419,7 @@ void check_relations(const Case& config, const Document& document) {
   check_cohesion(config);
   check_trigger(config);
   check_sequence(config);
+  check_pusher(config);
   check_nucleation(config);
   check_fronts(config.fronts, config.plate);
   check_snapshot_times(config.output.snapshot_times_s);

@@ -36,10 +36,12 @@ struct Grid {
   std::int64_t n_nodes() const { return std::int64_t{stride()} * (rows + 1); }
 };
 
-/// A boundary node that lets waves out: length of its boundary with the normal along x, and along y.
+/// A boundary node that lets waves out: length of its boundary with the normal along x, and along y; or that
+/// is held along one of them.
 struct AbsorbingNode {
   Node node = 0;
   double side_m = 0, top_m = 0;
+  bool holds_x = false, holds_y = false;
 };
 
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
@@ -55,6 +57,12 @@ struct Mesh {
   std::vector<Cell> cells;
   std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
+  /// Of a plate that is pushed at its side: those under the pusher, upwards. The loaded edge is held along y
+  /// alone then.
+  std::vector<Node> pushed_nodes;
+  bool is_pushed() const { return !pushed_nodes.empty(); }
+  /// The loaded edge, where both its displacements are prescribed.
+  std::vector<Node> driven_nodes() const { return is_pushed() ? std::vector<Node>{} : far_edge_nodes; }
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;

@@ -297,6 +297,7 @@ class Maker {
     name_interface_nodes();
     name_top();
     absorb();
+    hold();
     return std::move(mesh_);
   }
 
@@ -438,6 +439,25 @@ class Maker {
         }
       if (sides && !last && has_inner(grid.columns) && block.has(grid.columns))
         mesh_.absorbing.push_back({block.inner_node(grid.columns), grid.spacing_m, 0});
+    }
+  }
+
+  /// Nodes of a pushed plate that move along one direction alone.
+  void hold() {
+    if (!plate_.pusher.is_there()) return;
+    const double slack_m = 1e-9 * plate_.height_m;
+    for (const auto& block : blocks_)
+      for (int j = 0; j <= block.grid.rows; ++j) {
+        if (!block.has(0)) continue;
+        const Node n = block.node(0, j);
+        if (mesh_.y_m[n] < plate_.pusher.from_m - slack_m || mesh_.y_m[n] > plate_.pusher.to_m + slack_m) continue;
+        mesh_.pushed_nodes.push_back(n);
+        mesh_.absorbing.push_back({.node = n, .holds_x = true});
+      }
+    for (const Node n : mesh_.far_edge_nodes) {
+      const bool is_corner = !mesh_.pushed_nodes.empty() && mesh_.pushed_nodes.back() == n;
+      if (is_corner) mesh_.absorbing[mesh_.pushed_nodes.size() - 1].holds_y = true;
+      if (!is_corner) mesh_.absorbing.push_back({.node = n, .holds_y = true});
     }
   }
 

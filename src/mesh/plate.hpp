@@ -29,6 +29,12 @@ enum class Top {
   absorbing,  ///< it moves freely, waves leave through dashpots
 };
 
+/// Holds the left side along x, from one height to another one.
+struct Pusher {
+  double from_m = 0, to_m = 0;
+  bool is_there() const { return to_m > 0; }
+};
+
 /// A rectangle on the rigid plane y = 0 with its lower left corner at the origin.
 struct Plate {
   double width_m = 0.2;
@@ -43,6 +49,7 @@ struct Plate {
   double fillet_radius_m = 5e-3;
   Sides sides = Sides::free;  ///< others only with right-angled corners
   Top top = Top::loaded;
+  Pusher pusher = {};  ///< with it the loaded edge moves freely along x
 };
 
 /// Meshes the plate with four-node cells that are squares away from the corners, exact to rounding when the

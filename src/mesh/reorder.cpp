@@ -74,7 +74,7 @@ void renumber(Mesh& mesh, std::span<const Node> number) {
   }
   for (Cell& cell : mesh.cells)
     for (Node& n : cell) n = number[n];
-  for (auto* nodes : {&mesh.interface_nodes, &mesh.far_edge_nodes})
+  for (auto* nodes : {&mesh.interface_nodes, &mesh.far_edge_nodes, &mesh.pushed_nodes})
     for (Node& n : *nodes) n = number[n];
   for (auto& a : mesh.absorbing) a.node = number[a.node];
   mesh.grid = {.spacing_m = old.grid.spacing_m};

@@ -2,6 +2,7 @@
 #include "motion/level.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace slipfront::motion {
 
@@ -264,10 +265,12 @@ StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, 
 
 solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, solid::Pair trial,
                  record::Energies& works) {
-  const double mean_x = 0.5 * (before.x + trial.x) / (1 + dashpot.d_x);
-  const double mean_y = 0.5 * (before.y + trial.y) / (1 + dashpot.d_y);
-  works.boundary_work -= 2 * mass_kg * (dashpot.d_x * mean_x * mean_x + dashpot.d_y * mean_y * mean_y);
-  return {trial.x - 2 * dashpot.d_x * mean_x, trial.y - 2 * dashpot.d_y * mean_y};
+  const bool holds_x = std::isinf(dashpot.d_x), holds_y = std::isinf(dashpot.d_y);
+  const double d_x = holds_x ? 0 : dashpot.d_x, d_y = holds_y ? 0 : dashpot.d_y;
+  const double mean_x = 0.5 * (before.x + trial.x) / (1 + d_x);
+  const double mean_y = 0.5 * (before.y + trial.y) / (1 + d_y);
+  works.boundary_work -= 2 * mass_kg * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
+  return {holds_x ? 0 : trial.x - 2 * d_x * mean_x, holds_y ? 0 : trial.y - 2 * d_y * mean_y};
 }
 
 void set_motion_before(StepLevel& level, const BodyMotion& body) {

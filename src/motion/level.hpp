@@ -47,7 +47,7 @@ struct NodeRun {
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body);
 
 /// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
-/// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c.
+/// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c. Infinite: the node is held.
 struct Dashpot {
   std::size_t at = 0;  ///< row of the level, shared node, or interface node
   mesh::Node node = 0;

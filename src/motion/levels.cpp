@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/numbers.hpp"
 #include "base/error.hpp"
 #include "motion/level.hpp"
 #include "solid/element.hpp"
@@ -146,9 +147,10 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
 Dashpot make_dashpot(const mesh::AbsorbingNode& absorbing, const solid::Material& material, double mass_kg,
                      double step_s) {
   const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
-  const auto& [node, side_m, top_m] = absorbing;
+  const auto& [node, side_m, top_m, holds_x, holds_y] = absorbing;
   const double factor = 0.5 * step_s * material.density_kg_per_m3 / mass_kg;
-  return {0, node, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
+  return {0, node, holds_x ? infinity : factor * (c_L * side_m + c_S * top_m),
+          holds_y ? infinity : factor * (c_S * side_m + c_L * top_m)};
 }
 
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body) {
@@ -298,7 +300,7 @@ void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, co
                      const std::vector<std::uint8_t>& level_of_node, const std::vector<bool>& in_level,
                      const std::vector<bool>& in_cells) {
   std::vector<mesh::Node> top;
-  for (const auto n : mesh.far_edge_nodes) {
+  for (const auto n : mesh.driven_nodes()) {
     if (level_of_node[n] == l) level.top.push_back(n);
     if (in_cells[n]) top.push_back(n);
   }

@@ -35,7 +35,7 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.mass_kg = solid::lumped_mass(mesh, material);
   body.damping_s = material.stiffness_damping_s;
   body.is_in_contact = mesh::marked(mesh, mesh.interface_nodes);
-  body.is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
+  body.is_loaded = mesh::marked(mesh, mesh.driven_nodes());
   body.side = make_interface_side(mesh, body.mass_kg, BodyMotion{});
   body.side.landing = Landing(mesh, material, body.side.nodes);
   const auto levels = cell_levels(mesh, time, multiples);

@@ -53,6 +53,10 @@ double top_speed_m_per_s(const input::Case& config) {
   return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
 }
 
+double top_speed_in_event_m_per_s(const input::Case& config) {
+  return config.plate.pusher.is_there() ? 0 : top_speed_m_per_s(config);
+}
+
 stability::Bodies bodies_of(const input::Case& config) {
   stability::Bodies both = config.material;
   if (input::has_base_body(config)) both.below = input::base_material(config);
@@ -68,6 +72,7 @@ double advised_damping_s(const input::Case& config) {
 }
 
 statics::StaticSolver wanted_solver(const input::Case& config) {
+  if (config.plate.pusher.is_there()) return statics::StaticSolver::direct;
   const auto shape = [](const mesh::Plate& plate) {
     return statics::Shape{std::round(plate.width_m / plate.element_size_m),
                           std::round(plate.height_m / plate.element_size_m), plate.coarsenings > 0};

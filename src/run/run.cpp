@@ -158,7 +158,7 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
   for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
   auto stepper = stepper_of(config, initial, execution, processes);
   for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
-  stepper->start(state, top_speed_m_per_s(config), loads);
+  stepper->start(state, top_speed_in_event_m_per_s(config), loads);
   initial.release_displacements();
   release_nodes(initial);
   return stepper;
@@ -194,7 +194,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution, motion::Observers more) {
   const auto stepper = whole_stepper(config, initial, execution);
-  stepper->start(event_state(config, initial), top_speed_m_per_s(config), loads_of_event(config, initial));
+  stepper->start(event_state(config, initial), top_speed_in_event_m_per_s(config), loads_of_event(config, initial));
   return run_from(config, initial, *stepper, monitor, nullptr, std::move(more));
 }
 

@@ -148,7 +148,7 @@ void Sequence::take(const Result& result) {
   const auto& row_at_end = event.last_row;
   const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
   const auto u = relative(initial_, initial_.spontaneous);
-  const double shear_m = begins.shear_m + top_speed_m_per_s(config_) * event.time_s;
+  const double shear_m = begins.shear_m + top_speed_in_event_m_per_s(config_) * event.time_s;
   held_.contact.clear();
   held_.u_x_m.clear();
   double mean_m = 0;

@@ -141,10 +141,10 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   op.rows = rows_of(mesh, op.blocks);
   set_periods(mesh, op);
   op.mass_kg = lumped_mass(mesh, material);
-  op.is_far_edge = mesh::marked(mesh, mesh.far_edge_nodes);
+  op.is_far_edge = mesh::marked(mesh, mesh.driven_nodes());
   if (!op.blocks.empty()) set_stencils(op, material);
   op.whole = make_partial_stiffness(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
-  op.far_edge_rows = assemble_rows(mesh, material, mesh.far_edge_nodes);
+  op.far_edge_rows = assemble_rows(mesh, material, mesh.driven_nodes());
   return op;
 }
 

@@ -16,9 +16,10 @@ namespace slipfront::statics {
 
 namespace {
 
-/// Those whose rows of K feel the loaded edge: its own nodes and their neighbours.
+/// Those whose rows of K feel the loaded edge or the pusher: their own nodes and the neighbours.
 std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
-  const auto is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
+  auto is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
+  for (const auto n : mesh.pushed_nodes) is_loaded[n] = true;
   std::vector<bool> feels(mesh.n_nodes(), false);
   for (const auto& cell : mesh.cells)
     if (std::ranges::any_of(cell, [&](mesh::Node n) { return is_loaded[n]; }))
@@ -46,6 +47,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
 std::vector<std::int32_t> Factorisation::number_unknowns() {
   SLIPFRONT_ASSERT(mesh_.n_nodes() < std::numeric_limits<std::int32_t>::max() / 2, "too many unknowns");
   const auto is_loaded = mesh::marked(mesh_, mesh_.far_edge_nodes);
+  const auto is_pushed = mesh::marked(mesh_, mesh_.pushed_nodes);
   const auto order = dissect(mesh_, mesh_.interface_nodes);
   unknown_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), -1);
   std::vector<std::int32_t> block_ends;
@@ -53,7 +55,10 @@ std::vector<std::int32_t> Factorisation::number_unknowns() {
   for (const auto end : order.block_ends) {
     for (; k < end; ++k) {
       const auto n = order.nodes[k];
-      if (!is_loaded[n] || top_ == TopConstraint::vertical) unknown_[2 * n] = n_unknowns_++;
+      const bool is_held_along_x = top_ == TopConstraint::both     ? is_loaded[n]
+                                   : top_ == TopConstraint::pushed ? is_pushed[n]
+                                                                   : false;
+      if (!is_held_along_x) unknown_[2 * n] = n_unknowns_++;
       if (!is_loaded[n]) unknown_[2 * n + 1] = n_unknowns_++;
     }
     block_ends.push_back(n_unknowns_);
@@ -115,9 +120,8 @@ solid::Field Factorisation::displacement(const Load& load, const Eigen::VectorXd
 }
 
 solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_N) const {
-  SLIPFRONT_ASSERT(top_ == TopConstraint::both, "forces on a plate that nothing holds along x");
-  const std::vector<double> held(mesh_.far_edge_nodes.size(), 0.0);
-  return solve({held, held}, interface_force_N);
+  SLIPFRONT_ASSERT(top_ != TopConstraint::vertical, "forces on a plate that nothing holds along x");
+  return solve(unit_motion(mesh_, top_, EdgeMotion::none), interface_force_N);
 }
 
 solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::VectorXd& interface_force) const {
@@ -129,6 +133,8 @@ solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::Vecto
     if (top_ == TopConstraint::both) u.x[mesh_.far_edge_nodes[k]] = top.u_x_m[k];
     u.y[mesh_.far_edge_nodes[k]] = top.u_y_m[k];
   }
+  for (std::size_t k = 0; top_ == TopConstraint::pushed && k < mesh_.pushed_nodes.size(); ++k)
+    u.x[mesh_.pushed_nodes[k]] = top.pushed_u_x_m[k];
   std::vector<double> f(n_unknowns_);
   solid::for_each_row_product(near_top_, u, [&](std::size_t r, double x, double y) {
     const auto n = near_top_.node[r];

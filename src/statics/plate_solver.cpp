@@ -18,16 +18,11 @@ namespace {
 class CondensedLoadCase : public LoadCase {
  public:
   CondensedLoadCase(std::vector<double> gap_m, std::shared_ptr<const CondensedInterface> interface,
-                    const TopDisplacement& top, EdgeMotion motion)
+                    const TopDisplacement& top, const TopDisplacement& unit_motion)
       : gap_m_(std::move(gap_m)),
         interface_(std::move(interface)),
-        motion_(motion),
-        load_(interface_->load(top)) {
-    const auto n = top.u_x_m.size();
-    unit_shear_ = {{std::vector<double>(n, motion == EdgeMotion::along_x ? 1.0 : 0.0),
-                    std::vector<double>(n, motion == EdgeMotion::down ? -1.0 : 0.0)},
-                   Eigen::VectorXd::Zero(load_.g_N.size())};
-    if (motion != EdgeMotion::none) unit_shear_ = interface_->load(unit_shear_.top);
+        load_(interface_->load(top)),
+        unit_shear_(interface_->load(unit_motion)) {
     g0_N_ = interface_->relative_load(load_);
     g1_N_ = interface_->relative_load(unit_shear_);
   }
@@ -76,9 +71,7 @@ class CondensedLoadCase : public LoadCase {
 
   Displacement displacement(double shear) const override {
     auto load = load_;
-    const auto moves = motion_ == EdgeMotion::down ? &TopDisplacement::u_y_m : &TopDisplacement::u_x_m;
-    for (std::size_t k = 0; k < (load.top.*moves).size(); ++k)
-      (load.top.*moves)[k] += shear * (unit_shear_.top.*moves)[k];
+    load.top.add(shear, unit_shear_.top);
     load.g_N += shear * unit_shear_.g_N;
     return interface_->displacement(load, u0 + shear * u1);
   }
@@ -87,7 +80,6 @@ class CondensedLoadCase : public LoadCase {
  private:
   std::vector<double> gap_m_;
   std::shared_ptr<const CondensedInterface> interface_;
-  EdgeMotion motion_;
   Factorisation::Load load_;        ///< the loaded edge where it stands without shear
   Factorisation::Load unit_shear_;  ///< the loaded edge moved on by 1 m
   Eigen::VectorXd g0_N_, g1_N_;     ///< what the two send to the interface
@@ -100,7 +92,7 @@ class DirectSolver : public PlateSolver {
       : mesh_(mesh),
         material_(material),
         gap_m_(gaps_m(mesh, base ? &base->mesh : nullptr)),
-        held_plate_(std::make_shared<Factorisation>(mesh, material, TopConstraint::both)) {
+        held_plate_(std::make_shared<Factorisation>(mesh, material, constraint_under_shear(mesh))) {
     if (base) base_ = std::make_shared<Factorisation>(base->mesh, base->material, TopConstraint::both);
     held_ = std::make_shared<CondensedInterface>(held_plate_, base_);
   }
@@ -111,7 +103,8 @@ class DirectSolver : public PlateSolver {
     if (constraint == TopConstraint::vertical)
       interface = std::make_shared<CondensedInterface>(
           std::make_shared<Factorisation>(mesh_, material_, constraint), base_);
-    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top, motion);
+    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top,
+                                               unit_motion(mesh_, constraint, motion));
   }
   std::int64_t n_unknowns() const override {
     return held_plate_->n_unknowns() + (base_ ? base_->n_unknowns() : 0);
@@ -127,7 +120,7 @@ class DirectSolver : public PlateSolver {
   const mesh::Mesh& mesh_;
   solid::Material material_;
   std::vector<double> gap_m_;
-  // Both displacements of the edges away from the interface prescribed.
+  // Held as under shear.
   std::shared_ptr<const Factorisation> held_plate_, base_;
   std::shared_ptr<const CondensedInterface> held_;
 };
@@ -148,6 +141,19 @@ Shape shape_of(const mesh::Mesh& mesh) {
 }
 
 }  // namespace
+
+void TopDisplacement::add(double share, const TopDisplacement& more) {
+  for (const auto of : {&TopDisplacement::u_x_m, &TopDisplacement::u_y_m, &TopDisplacement::pushed_u_x_m})
+    for (std::size_t k = 0; k < (this->*of).size(); ++k) (this->*of)[k] += share * (more.*of)[k];
+}
+
+TopDisplacement unit_motion(const mesh::Mesh& mesh, TopConstraint constraint, EdgeMotion motion) {
+  const std::size_t n = mesh.far_edge_nodes.size();
+  const bool is_along_x = motion == EdgeMotion::along_x, is_pushed = constraint == TopConstraint::pushed;
+  return {std::vector<double>(n, is_along_x && !is_pushed ? 1.0 : 0.0),
+          std::vector<double>(n, motion == EdgeMotion::down ? -1.0 : 0.0),
+          std::vector<double>(is_pushed ? mesh.pushed_nodes.size() : 0, is_along_x ? 1.0 : 0.0)};
+}
 
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
   std::vector<double> gap_m;
@@ -185,7 +191,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
-  if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
+  if (mesh.is_pushed() || choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);
 }

@@ -17,17 +17,27 @@ namespace slipfront::statics {
 /// Contact state of an interface node at rest.
 enum class Contact : std::uint8_t { stick, slip, open };
 
-/// Which displacements of the loaded edge are prescribed.
-enum class TopConstraint { both, vertical };
+/// Which displacements of the loaded edge are prescribed; pushed: the vertical ones, and those along x of the
+/// nodes under the pusher.
+enum class TopConstraint { both, vertical, pushed };
+/// What holds a plate that is sheared.
+inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
+  return mesh.is_pushed() ? TopConstraint::pushed : TopConstraint::both;
+}
 
-/// How the loaded edge moves on from its prescribed displacements, by a length that LoadCase calls the shear.
+/// How the loaded edge, or what is pushed, moves on from its prescribed displacements, by a length that LoadCase
+/// calls the shear.
 enum class EdgeMotion : std::uint8_t { none, along_x, down };
 
 /// Prescribed displacements of the loaded edge, in the order of mesh.far_edge_nodes (u_x is ignored where
-/// only the vertical is prescribed).
+/// only the vertical is prescribed), and of mesh.pushed_nodes, where they are.
 struct TopDisplacement {
-  std::vector<double> u_x_m, u_y_m;
+  std::vector<double> u_x_m, u_y_m, pushed_u_x_m = {};
+
+  void add(double share, const TopDisplacement& more);
 };
+/// Moved on by 1 m.
+TopDisplacement unit_motion(const mesh::Mesh& mesh, TopConstraint constraint, EdgeMotion motion);
 
 /// What the contact does to each node of mesh.interface_nodes: u_y = -gap unless open, u_x = anchor where it
 /// sticks, f_x = -slip_sign mu_s f_y where it slips. u is the displacement relative to the rigid plane, or to
