@@ -490,12 +490,14 @@ void add_loading(Entries& all) {
 }
 
 void add_pusher(Entries& all) {
-  Table loading(all, "loading", [](auto& config) -> auto& { return config.plate.pusher; }, Stage::statics);
+  Table loading(
+      all, "loading", [](auto& config) -> auto& { return config.plate.pusher; }, Stage::statics);
   loading.only_with = direct();
   loading.add("pusher_from_m", &mesh::Pusher::from_m, at_least(0), "with pusher_to_m: the height from which");
-  loading.add("pusher_to_m", &mesh::Pusher::to_m, at_least(0),
-              "and to which the left side is pushed to +x instead of the top edge, which then moves freely along "
-              "x; nodes there do not move along x by themselves, and the pusher stays during an event; 0: none");
+  loading.add(
+      "pusher_to_m", &mesh::Pusher::to_m, at_least(0),
+      "and to which the left side is pushed to +x instead of the top edge, which then moves freely along "
+      "x; nodes there do not move along x by themselves, and the pusher stays during an event; 0: none");
 }
 
 void add_prestress(Entries& all) {

@@ -376,8 +376,11 @@ void check_pusher(const Case& config) {
         from, from_m, to, to_m, h_m, Key("plate.height_m"), config.plate.height_m);
   if (config.plate.sides != Sides::free)
     throw UserError("{} > 0 pushes at a side, which needs {} = free", to, Key("plate.sides"));
+  if (config.plate.corner == mesh::Corner::fillet)
+    throw UserError("{} > 0 needs {} other than fillet", to, Key("plate.corner"));
   if (config.loading.solver == statics::StaticSolver::iterative)
-    throw UserError("{} > 0 is solved by a factorisation; choose {} = direct or auto", to, Key("loading.solver"));
+    throw UserError("{} > 0 is solved by a factorisation; choose {} = direct or auto", to,
+                    Key("loading.solver"));
   if (config.time.precision == motion::Precision::single_precision)
     throw UserError("{} > 0 needs {} = double", to, Key("time.precision"));
 }

@@ -57,12 +57,10 @@ struct Mesh {
   std::vector<Cell> cells;
   std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
-  /// Of a plate that is pushed at its side: those under the pusher, upwards. The loaded edge is held along y
-  /// alone then.
-  std::vector<Node> pushed_nodes;
-  bool is_pushed() const { return !pushed_nodes.empty(); }
+  bool is_pushed = false;             ///< at its side; the loaded edge is held along y alone then
+  std::vector<Node> pushed_nodes;  ///< those under the pusher, upwards; of columns that do not reach it none
   /// The loaded edge, where both its displacements are prescribed.
-  std::vector<Node> driven_nodes() const { return is_pushed() ? std::vector<Node>{} : far_edge_nodes; }
+  std::vector<Node> driven_nodes() const { return is_pushed ? std::vector<Node>{} : far_edge_nodes; }
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;

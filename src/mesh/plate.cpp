@@ -444,13 +444,15 @@ class Maker {
 
   /// Nodes of a pushed plate that move along one direction alone.
   void hold() {
-    if (!plate_.pusher.is_there()) return;
+    mesh_.is_pushed = plate_.pusher.is_there();
+    if (!mesh_.is_pushed) return;
     const double slack_m = 1e-9 * plate_.height_m;
     for (const auto& block : blocks_)
       for (int j = 0; j <= block.grid.rows; ++j) {
         if (!block.has(0)) continue;
         const Node n = block.node(0, j);
-        if (mesh_.y_m[n] < plate_.pusher.from_m - slack_m || mesh_.y_m[n] > plate_.pusher.to_m + slack_m) continue;
+        if (mesh_.y_m[n] < plate_.pusher.from_m - slack_m || mesh_.y_m[n] > plate_.pusher.to_m + slack_m)
+          continue;
         mesh_.pushed_nodes.push_back(n);
         mesh_.absorbing.push_back({.node = n, .holds_x = true});
       }

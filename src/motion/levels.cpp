@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "base/numbers.hpp"
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "motion/level.hpp"
 #include "solid/element.hpp"
 

@@ -58,9 +58,8 @@ input::Case in_fewer_elements(input::Case config, double most) {
 /// Of the sample with its far edges held.
 fracture::SlipResponse response_of_sample(const input::Case& config, const InitialState& initial) {
   using statics::Factorisation;
-  const auto plate =
-      std::make_shared<const Factorisation>(initial.mesh, config.material,
-                                            statics::constraint_under_shear(initial.mesh));
+  const auto plate = std::make_shared<const Factorisation>(initial.mesh, config.material,
+                                                           statics::constraint_under_shear(initial.mesh));
   std::shared_ptr<const Factorisation> base;
   if (initial.base)
     base = std::make_shared<const Factorisation>(*initial.base, input::base_material(config),

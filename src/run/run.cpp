@@ -194,7 +194,8 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution, motion::Observers more) {
   const auto stepper = whole_stepper(config, initial, execution);
-  stepper->start(event_state(config, initial), top_speed_in_event_m_per_s(config), loads_of_event(config, initial));
+  stepper->start(event_state(config, initial), top_speed_in_event_m_per_s(config),
+                 loads_of_event(config, initial));
   return run_from(config, initial, *stepper, monitor, nullptr, std::move(more));
 }
 

@@ -22,11 +22,11 @@ enum class Contact : std::uint8_t { stick, slip, open };
 enum class TopConstraint { both, vertical, pushed };
 /// What holds a plate that is sheared.
 inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
-  return mesh.is_pushed() ? TopConstraint::pushed : TopConstraint::both;
+  return mesh.is_pushed ? TopConstraint::pushed : TopConstraint::both;
 }
 
-/// How the loaded edge, or what is pushed, moves on from its prescribed displacements, by a length that LoadCase
-/// calls the shear.
+/// How the loaded edge, or what is pushed, moves on from its prescribed displacements, by a length that
+/// LoadCase calls the shear.
 enum class EdgeMotion : std::uint8_t { none, along_x, down };
 
 /// Prescribed displacements of the loaded edge, in the order of mesh.far_edge_nodes (u_x is ignored where

@@ -399,7 +399,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
 
 void Statics::press_down(double compliance_m_per_Pa) {
   const auto& mesh = mesh_;
-  const bool is_free = loading_.top_during_tilt == TopEdge::free || mesh.is_pushed();
+  const bool is_free = loading_.top_during_tilt == TopEdge::free || mesh.is_pushed;
   const auto& loaded = mesh.far_edge_nodes;
   const double width_m = mesh.x_m[loaded.back()] - mesh.x_m[loaded.front()];
   const auto force_N_per_m = normal_force_N_per_m(loading_, width_m);
@@ -458,7 +458,8 @@ void Statics::press_down(double compliance_m_per_Pa) {
   for (const auto n : mesh.pushed_nodes) tilt.pushed_u_x_m.push_back(tilted_.u_m.x[n]);
   tilted_top_ = tilt;
   const auto tilted_u = displacement_of(tilted_);
-  sheared_ = solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
+  sheared_ =
+      solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 Statics::~Statics() = default;
@@ -487,7 +488,8 @@ Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
   } else {
     const auto tilted_u = displacement_of(tilted_);
     const auto make_case = [&](int level) {
-      return solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, level);
+      return solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u,
+                                level);
     };
     settled = settle_on_levels(mesh_, base_mesh_, *solver_, sticking(held_contact_, held_u_x_m_, mu_s_),
                                make_case, settle_problem, *sheared_);
@@ -523,7 +525,8 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
   last_.reset();
   // What was solved before leaves no rounding behind.
   const auto tilted_u = displacement_of(tilted_);
-  sheared_ = solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
+  sheared_ =
+      solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 Equilibrium Statics::shear_by(double shear_m) const {

@@ -49,18 +49,20 @@ auto members(const Struct& s) {
   } else if constexpr (n == 9) {
     const auto& [a, b, c, d, e, f, g, h, i] = s;
     return std::tuple(a, b, c, d, e, f, g, h, i);
-  } else if constexpr (n == 12) {
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = s;
-    return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
   } else {
     static_assert(n == 13);
     const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
     return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l, m);
   }
 }
+auto members(const mesh::Plate& plate) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, pusher] = plate;
+  const auto& [from_m, to_m] = pusher;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l, from_m, to_m);
+}
 auto members(const Base& base) {
   const auto& [kind, plate, material] = base;
-  return std::tuple(kind, members<12>(plate), members<5>(material));
+  return std::tuple(kind, members(plate), members<5>(material));
 }
 auto members(const Prestress& p) {
   const auto& [a, b, c, table, e, f] = p;
@@ -87,7 +89,7 @@ auto members(const Case& c) {
   const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, tip,
                regularisation, contact, event, trigger, nucleation, sequence, time, fronts, output, probes] =
       c;
-  return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<13>(loading),
+  return std::tuple(title, members(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x), tip,
                     members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
                     members<3>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
@@ -247,6 +249,26 @@ TEST(Schema, SequencesReadBackFromToml) {
   sequence.time.quiet_s = 1e-3;
   sequence.sequence = {7, 400, true};
   expect_equal(parsed(to_toml(sequence)), sequence);
+}
+
+TEST(Schema, PushersReadBackFromToml) {
+  Case pushed;
+  pushed.plate.pusher = {0.01, 0.02};
+  expect_equal(parsed(to_toml(pushed)), pushed);
+}
+
+TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
+  const std::string pusher = "loading.pusher_from_m = 0.01\nloading.pusher_to_m = 0.02\n";
+  EXPECT_THAT(parse_error("loading.pusher_to_m = 0.02"), HasSubstr("an element above the interface"));
+  EXPECT_THAT(parse_error("loading.pusher_from_m = 0.02"), HasSubstr("an element or more apart"));
+  EXPECT_THAT(parse_error("loading.pusher_from_m = 0.05\nloading.pusher_to_m = 0.2"),
+              HasSubstr("plate.height_m"));
+  EXPECT_THAT(parse_error(pusher + "plate.corner = 'fillet'"), HasSubstr("other than fillet"));
+  EXPECT_THAT(parse_error(pusher + "plate.corner = 'none'\nplate.sides = 'absorbing'"),
+              HasSubstr("plate.sides = free"));
+  EXPECT_THAT(parse_error(pusher + "loading.solver = 'iterative'"), HasSubstr("loading.solver = direct"));
+  EXPECT_THAT(parse_error(pusher + "time.precision = 'single'"), HasSubstr("time.precision = double"));
+  EXPECT_THAT(parse_error(pusher + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
 }
 
 TEST(Schema, DefaultsOfASequenceLetEventsComeToRestBeforeTheEdgeMovesOn) {

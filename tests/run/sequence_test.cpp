@@ -162,6 +162,45 @@ TEST(Sequence, RowsOfEventsTellWhatSlipped) {
   }
 }
 
+TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
+  auto config = sequence_case(200, 0.5);
+  test::law(config).mu_s = 0.7;
+  config.plate.corner = mesh::Corner::none;
+  config.plate.pusher = {8e-3, 16e-3};
+  config.loading.mean_pressure_Pa = 5e6;
+  config.sequence.to_global_sliding = true;
+  Sequence sequence(config, test::go_on);
+  while (sequence.end().empty()) {
+    const auto* initial = sequence.next();
+    auto with_fields = config;
+    with_fields.output.snapshot_times_s = {1e-5, 3e-5};
+    const auto result = run_from(with_fields, *initial, test::go_on);
+    sequence.take(result);
+    ASSERT_FALSE(result.event.snapshots.empty());
+    for (const auto& snapshot : result.event.snapshots) {
+      for (const auto n : initial->mesh.pushed_nodes) EXPECT_EQ(snapshot.v_m_per_s.x[n], 0);
+      for (const auto n : initial->mesh.far_edge_nodes) EXPECT_EQ(snapshot.v_m_per_s.y[n], 0);
+    }
+  }
+  const auto& events = sequence.events();
+  ASSERT_GT(events.size(), 5U);
+  EXPECT_EQ(events.back().is_global, 1);
+  // Longer and longer: the longest so far is so a good part of the time, from the pushed end on.
+  double longest_m = 0;
+  int n_longer = 0;
+  for (const auto& e : events) {
+    EXPECT_LT(e.from_x_m, e.length_m > 0.03 ? 0.01 : 0.03);
+    if (e.length_m > longest_m) ++n_longer;
+    longest_m = std::max(longest_m, e.length_m);
+  }
+  EXPECT_GT(n_longer, 5);
+  const auto& rows = sequence.loading();
+  double largest = 0;
+  for (const auto& term : record::energy_terms)
+    largest = std::max(largest, std::abs(rows.back().energies.*term.member));
+  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-11 * largest);
+}
+
 TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
   // Turned by half a turn the two are each other, and the shear is the same.
   auto config = sequence_case(3);

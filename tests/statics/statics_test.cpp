@@ -135,6 +135,32 @@ TEST(Statics, SlipOfPartOfAPlateLowersItsShearAndRaisesThatBeside) {
   }
 }
 
+TEST(Statics, APushedPlateBearsAtItsInterfaceWhatThePusherGives) {
+  mesh::Plate plate{.element_size_m = 4e-3, .corner = mesh::Corner::none, .pusher = {8e-3, 24e-3}};
+  const auto mesh = mesh::make_plate(plate);
+  ASSERT_EQ(mesh.pushed_nodes.size(), 5U);
+  Loading loading;
+  loading.tilt_left_m = loading.tilt_right_m = 1e-4;
+  const solid::Material material;
+  Statics statics(mesh, material, loading, 0.5);
+  const auto e = statics.shear_to(0.999);
+  const auto rows = solid::assemble_rows(mesh, material, std::vector<mesh::Node>(mesh.pushed_nodes));
+  double pushed_N_per_m = 0, largest_N_per_m = 0;
+  solid::for_each_row_product(rows, e.u_m, [&](std::size_t, double x, double) { pushed_N_per_m += x; });
+  const auto top = solid::assemble_rows(mesh, material, std::vector<mesh::Node>(mesh.far_edge_nodes));
+  solid::for_each_row_product(top, e.u_m, [&](std::size_t, double x, double y) {
+    largest_N_per_m = std::max(largest_N_per_m, std::abs(y));
+    EXPECT_NEAR(x, 0, 1e-6 * pushed_N_per_m);  // rolls
+  });
+  EXPECT_GT(largest_N_per_m, 0);
+  const auto force = contact_force(e, mesh::tributary_lengths_m(mesh));
+  EXPECT_NEAR(force.shear_N_per_m, pushed_N_per_m, 1e-9 * pushed_N_per_m);
+  for (const auto n : mesh.pushed_nodes)
+    EXPECT_NEAR(e.u_m.x[n] - statics.tilted().u_m.x[n], e.shear_m, 1e-12 * e.shear_m);
+  for (const auto n : mesh.far_edge_nodes) EXPECT_DOUBLE_EQ(e.u_m.y[n], -1e-4);
+  EXPECT_LT(e.peak_x_m, 0.05);  // slip begins near the pusher
+}
+
 TEST_F(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
   expect_slope_of_displacement(statics_, 0.999, 1e-11);
   const auto e = statics_.shear_to(0.999);
