@@ -548,6 +548,9 @@ event.kind = "spontaneous"
 max_events = 3
 end_s = 500.0
 to_global_sliding = true
+[loading]
+pusher_from_m = 8e-3
+pusher_to_m = 16e-3
 """,
 }
 

@@ -148,7 +148,13 @@ def loads(run: Run) -> str:
     sheared = entry(run.info, "statics", "common_shear_m")
     by = f"by {quantity(sheared, 'm')} " if is_number(sheared) else ""
     pushed = left if left == right else f"{left} at its left end, {right} at its right"
-    moves = f"upper edge pressed down {pushed}, then moved {by}to +x"
+    to_m = entry(run.case, "loading", "pusher_to_m")
+    if is_number(to_m) and to_m > 0:
+        heights = f"{si(run, 'loading', 'pusher_from_m')} to {si(run, 'loading', 'pusher_to_m')}"
+        moved = f"left side pushed {by}to +x at heights of {heights}"
+    else:
+        moved = f"moved {by}to +x"
+    moves = f"upper edge pressed down {pushed}, then {moved}"
     return "; ".join([*forces(found), moves, of_nodes])
 
 
