@@ -270,6 +270,9 @@ solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, sol
   const double mean_x = 0.5 * (before.x + trial.x) / (1 + d_x);
   const double mean_y = 0.5 * (before.y + trial.y) / (1 + d_y);
   works.boundary_work -= 2 * mass_kg * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
+  // What holds a node takes its motion at the start, if it had one.
+  if (holds_x) works.boundary_work -= 0.5 * mass_kg * trial.x * before.x;
+  if (holds_y) works.boundary_work -= 0.5 * mass_kg * trial.y * before.y;
   return {holds_x ? 0 : trial.x - 2 * d_x * mean_x, holds_y ? 0 : trial.y - 2 * d_y * mean_y};
 }
 

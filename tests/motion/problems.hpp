@@ -157,6 +157,9 @@ inline void graded_bodies(Problem& p, const solid::Material& below, int coarseni
 inline void repeating_alone(Problem& p) {
   p.plate.sides = mesh::Sides::periodic;
 }
+inline void pushed(Problem& p) {
+  p.plate.pusher = {1e-3, 20e-3};
+}
 /// Nodes around an onset: five parts have 40 columns each.
 inline constexpr int beyond_a_part = 60;
 
@@ -172,6 +175,7 @@ inline const Variant variants[] = {
     {"ReliefSingle", [](Problem& p) { p.plate.corner = mesh::Corner::relief, p.time.precision = single; }},
     {"Fillet", [](Problem& p) { p.plate.corner = mesh::Corner::fillet; }},
     {"AbsorbingEdges", between_absorbing_edges},
+    {"Pushed", pushed},  // in sub-cycled rows and above
     {"Repeating", repeating, {2, 3, 4}},
     {"TwoBodies", [](Problem& p) { p.below = &gel, p.contact.algorithm = predictor_corrector; }},
     {"LowOnLow", [](Problem& p) { of_heights(p, 7e-3, 6e-3); }, {2}},
@@ -195,6 +199,7 @@ inline const Variant variants[] = {
      }},
     {"GradedHalfUnits",
      [](Problem& p) { p = graded(), p.plate.width_m = 0.204, between_absorbing_edges(p); }},
+    {"GradedPushed", [](Problem& p) { p = graded(), pushed(p); }},
     {"GradedRepeating", [](Problem& p) { graded_bodies(p, gel, 2, 2), repeating(p); }, {2, 3, 4}},
     {"GradedSingle", [](Problem& p) { p = graded(), p.plate.height_m = 0.1, p.time.precision = single; }},
     {"EvenOnGradedOneStep",

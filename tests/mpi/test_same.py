@@ -237,9 +237,13 @@ interface_rows = 2
 """
 
 
-def test_a_sequence_of_several_processes(tmp_path, mpirun):
+PUSHER = "[loading]\npusher_from_m = 8e-3\npusher_to_m = 20e-3\n"  # of rank 0's columns alone
+
+
+@pytest.mark.parametrize("loading", ["", PUSHER])
+def test_a_sequence_of_several_processes(tmp_path, mpirun, loading):
     """The first event is the same; energies to rounding, from which the next one grows apart."""
-    (tmp_path / "case.toml").write_text(SEQUENCE)
+    (tmp_path / "case.toml").write_text(SEQUENCE + loading)
     require_done(mpirun(2, "run", "case.toml", "-q", "-o", "shared"))
     require_done(mpirun.alone("run", "case.toml", "-q", "-o", "alone"))
     first = {}
