@@ -71,8 +71,8 @@ def sequence(of: OpenSequence) -> Drawing:
         ax.set_xlim(0, 1e3 * of.case["plate"]["width_m"])
     caption = (
         "(a) Shear over normal force along the loading. (b) Extent of each event over that ratio where it "
-        "begins, orange where all nodes inside slip; ticks: ends predicted from the tractions before. (c) Slip "
-        "along the interface after each event."
+        "begins, orange where all nodes inside slip; ticks: ends predicted from the tractions before. (c) "
+        "Slip along the interface after each event."
     )
     return Drawing("sequence", figure, caption)
 
