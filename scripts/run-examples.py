@@ -10,7 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from slipfront.figures.rupture import write
+from slipfront.figures import rupture, sequence
+from slipfront.read import is_sequence
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
@@ -33,6 +34,7 @@ def main() -> int:
         done = subprocess.run(command, check=False)
         if done.returncode != 0:
             return done.returncode
+        write = sequence.write if is_sequence(folder) else rupture.write
         write(options.figures / f"example_{name.replace('-', '_')}.png", folder)
     return 0
 

@@ -24,7 +24,7 @@ from slipfront.units import attributes
 EVENT_NAMES = {
     "event": "number of the event",
     "begin_s": "time since the tilt at which the event begins",
-    "shear_m": "displacement of the top edge to +x when it begins",
+    "shear_m": "displacement of the top edge or the pusher to +x when it begins",
     "begin_x_m": "where slip begins inside",
     "from_x_m": "left end of what slips",
     "to_x_m": "right end of what slips",
@@ -50,7 +50,7 @@ LOADING_NAMES = {
     "event": "number of events that have begun",
     "phase": "where the loading stands",
     "time_s": "time since the tilt",
-    "shear_m": "displacement of the top edge to +x since the tilt",
+    "shear_m": "displacement of the top edge or the pusher to +x since the tilt",
     "normal_force_N_per_m": "sum of the pressure over the interface",
     "shear_force_N_per_m": "sum of the tangential traction",
     "shear_over_normal": "shear over normal force",

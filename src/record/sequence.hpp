@@ -47,7 +47,7 @@ struct LoadingRow {
 /// last one.
 inline constexpr std::array<Column<LoadingRow, double>, 6> loading_fields = {{
     {"time_s", "s", "time since the tilt, in which the top edge moves at its speed", &LoadingRow::time_s},
-    {"shear_m", "m", "displacement of the top edge to +x since the tilt", &LoadingRow::shear_m},
+    {"shear_m", "m", "displacement of the top edge or the pusher to +x since the tilt", &LoadingRow::shear_m},
     {"normal_force_N_per_m", "N/m", "sum of the pressure over the interface",
      &LoadingRow::normal_force_N_per_m},
     {"shear_force_N_per_m", "N/m", "sum of the tangential traction", &LoadingRow::shear_force_N_per_m},
@@ -86,7 +86,7 @@ struct SequenceEvent {
 
 inline constexpr std::array<Column<SequenceEvent, double>, 24> sequence_event_fields = {{
     {"begin_s", "s", "time since the tilt at which it begins", &SequenceEvent::begin_s},
-    {"shear_m", "m", "displacement of the top edge then", &SequenceEvent::shear_m},
+    {"shear_m", "m", "displacement of the top edge or the pusher then", &SequenceEvent::shear_m},
     {"begin_x_m", "m", "where slip begins inside", &SequenceEvent::begin_x_m},
     {"from_x_m", "m", "left end of what slips", &SequenceEvent::from_x_m},
     {"to_x_m", "m", "right end", &SequenceEvent::to_x_m},

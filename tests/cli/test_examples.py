@@ -2,10 +2,12 @@
 """The worked cases of examples/ on coarser meshes: they run to their end and show what their pages say."""
 
 import sys
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+import slipfront
 from common import ROOT, call, require_done, sets
 from slipfront.read import Front, Run, read_run
 
@@ -26,6 +28,7 @@ COARSE_M = {
     "barrier": 1e-3,
     "two-bodies": 0.5e-3,
     "experiment": 1e-3,
+    "precursors": 2e-3,
 }
 
 
@@ -55,14 +58,19 @@ def modes(run: Run) -> set[str]:
 
 
 @pytest.fixture
-def run(program, tmp_path):
-    def go(name: str, *changes: str) -> Run:
+def folder(program, tmp_path):
+    def go(name: str, *changes: str) -> Path:
         case = [EXAMPLES / name / "case.toml", *sets(f"plate.element_size_m={COARSE_M[name]}", *changes)]
         printed = require_done(program("run", *case, "-o", tmp_path / name, "--overwrite")).stderr
         assert "\nwarning" not in printed, printed
-        return read_run(tmp_path / name)
+        return tmp_path / name
 
     return go
+
+
+@pytest.fixture
+def run(folder):
+    return lambda name, *changes: read_run(folder(name, *changes))
 
 
 def test_every_example_is_here():
@@ -150,3 +158,18 @@ def test_the_record_tells_d_c(program, tmp_path):
     rows = [tuple(map(float, line.split())) for line in printed.splitlines()[1:]]
     nearest = min(rows, key=lambda row: row[1])
     assert len(rows) == 5 and nearest[0] in (1.2, 1.45) and nearest[1] < 0.6
+
+
+def test_precursors_grow_with_the_force_until_all_slides_below_mu_s(folder):
+    sequence = slipfront.open(folder("precursors"))
+    events = sequence.events
+    assert list(events.is_global.to_numpy()) == [0] * (events.sizes["event"] - 1) + [1]
+    large = events.isel(event=events.max_slip_m.to_numpy() > 1e-6)
+    ends_m, friction = large.to_x_m.to_numpy(), large.friction_before.to_numpy()
+    assert len(ends_m) >= 8
+    assert np.all(np.diff(ends_m) >= 0) and np.all(np.diff(friction) > 0)
+    assert ends_m[-2] < 0.6 * 0.2
+    assert 0.32 < friction[-1] < 0.37
+    # Fronts near c_S outrun what is predicted; those of the first event do not.
+    beyond_m = ends_m - large.predicted_to_x_m.to_numpy()
+    assert beyond_m[0] < 0.01 and np.nanmin(beyond_m[-4:]) > 0.03

@@ -15,6 +15,8 @@ from common import refusal, require_done, require_same_bytes
 from package_cases import program, write_case
 from refusals import flip, replace
 from report_pages import data_of, page_of
+from slipfront.figures.sequence import main
+from slipfront.figures.sequence import sequence as draw
 from slipfront.read import ENERGY_TERMS, read_run
 
 N_EVENTS = 4
@@ -281,6 +283,23 @@ def test_the_page_of_a_sequence_without_an_event(interrupted):
     text = page_of(interrupted)
     assert "No event is complete." in text and 'class="plot"' not in text
     assert "still running or killed, results up to event 0" in text
+
+
+def test_the_picture_shows_the_tables(folder, tmp_path, capsys):
+    sequence = slipfront.open(folder)
+    events = sequence.events
+    force, extents, slip = draw(sequence).figure.axes
+    np.testing.assert_array_equal(force.lines[0].get_ydata(), sequence.loading.shear_over_normal)
+    for k, line in enumerate(extents.collections[0].get_segments()):
+        np.testing.assert_allclose(line[:, 0], 1e3 * np.array([events.from_x_m[k], events.to_x_m[k]]))
+        np.testing.assert_array_equal(line[:, 1], events.friction_before[k])
+    assert len(slip.lines) == N_EVENTS
+    np.testing.assert_allclose(slip.lines[-1].get_ydata(), 1e6 * sequence.slip.sum("event"))
+    assert main([str(tmp_path / "a.png"), str(folder)]) == 0
+    assert (tmp_path / "a.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert main([str(tmp_path / "b.png"), str(folder / "events/0001")]) == 2
+    assert "b.png" not in [file.name for file in tmp_path.iterdir()]
+    capsys.readouterr()
 
 
 WEAKENING = """

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A sequence of events at a glance: its force, the extents of its events, and the slip that they leave.
+
+usage: python -m slipfront.figures.sequence PICTURE DIR, output folder of `slipfront run` with
+sequence.max_events above 1"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+
+from slipfront.figures import style
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.folder import SEQUENCE
+from slipfront.opened_sequence import OpenSequence
+from slipfront.read import read_place
+
+LOCAL, GLOBAL, PREDICTED = "#0072b2", "#d55e00", "#000000"
+FORCE_LABEL = r"$F_\mathrm{S} / F_\mathrm{N}$"
+
+
+def colours(sequence: OpenSequence) -> list[str]:
+    """Of each event, by whether it breaks all of the interface."""
+    return [GLOBAL if whole else LOCAL for whole in sequence.events["is_global"].to_numpy() == 1]
+
+
+def draw_force(ax: Axes, sequence: OpenSequence) -> None:
+    loading = sequence.loading
+    ax.plot(
+        style.mm(loading["shear_m"]), loading["shear_over_normal"], linewidth=0.7, color=LOCAL, gid="force"
+    )
+    pushed = sequence.case["loading"]["pusher_to_m"] > 0
+    ax.set(xlabel=f"displacement of the {'pusher' if pushed else 'top edge'} (mm)", ylabel=FORCE_LABEL)
+
+
+def draw_extents(ax: Axes, sequence: OpenSequence) -> None:
+    events = sequence.events
+    force = events["friction_before"].to_numpy()
+    ends = style.mm(np.stack((events["from_x_m"], events["to_x_m"]), axis=1))
+    lines = [np.column_stack((end, (level, level))) for end, level in zip(ends, force, strict=True)]
+    ax.add_collection(LineCollection(lines, colors=colours(sequence), linewidths=0.9, gid="extents"))
+    look: style.Look = {"linestyle": "none", "marker": "|", "markersize": 4, "color": PREDICTED}
+    for column in ("predicted_from_x_m", "predicted_to_x_m"):
+        ax.plot(style.mm(events[column]), force, gid=column, **look)
+    ax.autoscale_view()
+    ax.set(xlabel="$x$ (mm)", ylabel=f"{FORCE_LABEL} where an event begins")
+
+
+def draw_slip(ax: Axes, sequence: OpenSequence) -> None:
+    """What has slipped after each event."""
+    slip = sequence.slip
+    for number, row, colour in zip(
+        slip["event"].to_numpy(), slip.cumsum("event").to_numpy(), colours(sequence), strict=True
+    ):
+        ax.plot(style.mm(slip["x_m"]), 1e6 * row, linewidth=0.6, color=colour, gid=f"slip:{number}")
+    ax.set(xlabel="$x$ (mm)", ylabel="slip after each event (µm)")
+
+
+def sequence(of: OpenSequence) -> Drawing:
+    figure = style.new_figure(style.PAGE_MM, 62)
+    axes = figure.subplots(1, 3)
+    for ax, letter, draw in zip(axes, "abc", (draw_force, draw_extents, draw_slip), strict=True):
+        draw(ax, of)
+        style.panel_letter(ax, letter)
+    for ax in axes[1:]:
+        ax.set_xlim(0, 1e3 * of.case["plate"]["width_m"])
+    caption = (
+        "(a) Shear over normal force along the loading. (b) Extent of each event over that ratio where it "
+        "begins, orange where all nodes inside slip; ticks: ends predicted from the tractions before. (c) "
+        "Slip along the interface after each event."
+    )
+    return Drawing("sequence", figure, caption)
+
+
+def write(picture: Path, folder: Path) -> list[str]:
+    def draw(results: Path) -> Drawing:
+        return sequence(OpenSequence(read_place(results, SEQUENCE)))
+
+    return write_results(picture, folder, draw)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    return command_to_draw(
+        "slipfront.figures.sequence",
+        "Draws the force of a sequence of events, their extents and their slip.",
+        "`slipfront run` with sequence.max_events above 1",
+        write,
+        arguments,
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
