@@ -90,7 +90,7 @@ void add_costs(const run::Info& info, Listing& list) {
 }
 
 /// The forces and the displacements that give them.
-void add_loads(const run::FoundLoads& loads, Listing& list) {
+void add_loads(const run::FoundLoads& loads, bool is_pushed, Listing& list) {
   list.add("normal force", fmt::format("{:.6g} N/m, a mean pressure of {:.6g} Pa", loads.normal_force_N_per_m,
                                        loads.mean_pressure_Pa));
   list.add("  upper edge pressed down", fmt::format("{:.6g} m at its left end, {:.6g} m at its right one",
@@ -99,7 +99,7 @@ void add_loads(const run::FoundLoads& loads, Listing& list) {
            fmt::format("{:.6g} N/m, {:.6g} of the critical one, {:.6g} N/m", loads.shear_force_N_per_m,
                        loads.shear_force_N_per_m / loads.critical_shear_force_N_per_m,
                        loads.critical_shear_force_N_per_m));
-  list.add("  upper edge then moved to +x",
+  list.add(is_pushed ? "  left side then pushed to +x" : "  upper edge then moved to +x",
            fmt::format("{:.6g} m, critical {:.6g} m", loads.shear_m, loads.critical_shear_m));
 }
 
@@ -246,7 +246,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_steps(config, info, list);
   add_costs(info, list);
   if (info.shared) add_shared(*info.shared, list);
-  if (info.loads) add_loads(*info.loads, list);
+  if (info.loads) add_loads(*info.loads, config.plate.pusher.is_there(), list);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",

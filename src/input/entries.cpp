@@ -469,9 +469,11 @@ void add_loading(Entries& all) {
                "preconditioner, or by the one of both that suits the number of elements");
   loading.stage = Stage::motion;
   loading.only_with = {};
-  loading.add("shear_speed_over_c_L", &Loading::shear_speed_over_c_L, {0, 1, false, true},
-              "speed of the top edge to +x over the longitudinal wave speed, in a ramp and during the event; "
-              "0 holds it still, which a ramp and event.kind = spontaneous do not allow");
+  loading.add(
+      "shear_speed_over_c_L", &Loading::shear_speed_over_c_L, {0, 1, false, true},
+      "speed of the top edge to +x over the longitudinal wave speed c_L of slipfront info, in a ramp and "
+      "during the event, or of a pusher between events; "
+      "0 holds it still, which a ramp and event.kind = spontaneous do not allow");
   loading.stage = Stage::statics;
   loading.only_with = tilted();
   loading.add("edge_margin_m", &Loading::edge_margin_m, at_least(0),

@@ -360,6 +360,7 @@ void ResultFolder::abandon() {
 }
 
 void ResultFolder::publish(bool adds) {
+  remove_report(unfinished());  // of a part of them
   const auto earlier = earlier_set(dir_);
   const auto results_are = fmt::format("; the results are in {}", unfinished().string());
   walk(

@@ -174,6 +174,11 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
   if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
   Meshes meshes{only_interface ? mesh::make_interface(config.plate) : mesh::make_plate(config.plate), {}};
+  if (meshes.plate.is_pushed && meshes.plate.pushed_nodes.empty() && !meshes.plate.is_interface())
+    throw UserError(
+        "no node lies between {} = {:g} m and {} = {:g} m, where elements are larger; choose others",
+        Key("loading.pusher_from_m"), config.plate.pusher.from_m, Key("loading.pusher_to_m"),
+        config.plate.pusher.to_m);
   motion::require_rows_fit(meshes.plate, config.time);
   if (input::has_base_body(config)) {
     meshes.base = make_base(config, only_interface);

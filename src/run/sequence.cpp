@@ -127,7 +127,8 @@ const InitialState* Sequence::next() {
   const auto at_least = [&](statics::Equilibrium state) {
     return state.shear_m > at_rest_.shear_m ? std::move(state) : statics_.shear_by(at_rest_.shear_m);
   };
-  initial_.critical_shear_m = statics_.shear_to(1).shear_m + held_.moved_m;
+  auto critical = statics_.shear_to(1);
+  initial_.critical_shear_m = critical.shear_m + held_.moved_m;
   initial_.common = at_least(statics_.shear_to(1 - margin));
   initial_.spontaneous = at_least(statics_.shear_to(1 + margin));
   const double end_s = config_.sequence.end_s;
@@ -137,6 +138,9 @@ const InitialState* Sequence::next() {
     return nullptr;
   }
   load_to(LoadingPhase::event_begins, initial_.spontaneous);
+  for (auto* state : {&critical, &initial_.common, &initial_.spontaneous}) state->shear_m += held_.moved_m;
+  if (has_forces(config_))
+    initial_.loads = found_loads(config_, statics_, critical, initial_.common, initial_.tributary_m);
   initial_.wall_s = seconds_since(start);
   return &initial_;
 }

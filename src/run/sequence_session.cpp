@@ -2,9 +2,12 @@
 #include "run/sequence_session.hpp"
 
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
+#include "files/checksum.hpp"
 #include "files/files.hpp"
 #include "run/checkpoint.hpp"
 #include "run/sequence.hpp"
@@ -34,14 +37,16 @@ class SequenceSession {
 
  private:
   void begin(Checkpoints::Checkpoint* kept);
+  /// Refuses finished events that are not as they were.
+  void require_events_unchanged() const;
   /// The next event. @return false where none begins
   bool run_event();
   /// Between events.
   void keep();
   void write(const std::string& end, const Status& status);
   void fail(const char* status, const std::string& reason) noexcept;
-  std::filesystem::path event_dir() const {
-    return folder_.unfinished() / "events" / fmt::format("{:04}", sequence_->events().size() + 1);
+  std::filesystem::path event_dir(std::size_t k) const {
+    return folder_.unfinished() / "events" / fmt::format("{:04}", k);
   }
 
   results::ResultFolder& folder_;
@@ -52,7 +57,8 @@ class SequenceSession {
   Checkpoints checkpoints_;
   CheckpointHead head_;
   std::unique_ptr<Sequence> sequence_;
-  bool began_ = false;  ///< before that a new sequence has nothing to keep
+  std::vector<std::string> sums_;  ///< of the lists of checksums of the events that are done
+  bool began_ = false;             ///< before that a new sequence has nothing to keep
 };
 
 FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed) {
@@ -94,10 +100,23 @@ void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
       *options_.processes);
   if (kept == nullptr) return;
   try {
+    kept->rest(sums_);
     sequence_->serialize(kept->rest);
     kept->rest.close();
+    require_possible(sums_.size() == sequence_->events().size(), "events");
   } catch (const StateError& error) {
     throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
+  }
+  require_events_unchanged();
+}
+
+void SequenceSession::require_events_unchanged() const {
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    const auto dir = event_dir(k + 1);
+    const auto list = dir / files::checksum_list;
+    if (!files::is_there(list) || files::sha256_of_file(list) != sums_[k])
+      throw UserError("{}: was changed since it was finished; restore it, or start a new run", dir.string());
+    files::require_intact(dir);
   }
 }
 
@@ -110,7 +129,8 @@ bool SequenceSession::run_event() {
     hooks_.progress(part.c_str(), step, total);
   };
   options_.initial_state = [initial] { return *initial; };
-  results::ResultFolder event_folder(event_dir(), event_work, &folder_);
+  const auto dir = event_dir(sequence_->events().size() + 1);
+  results::ResultFolder event_folder(dir, event_work, &folder_);
   const auto finished = event_folder.has_unfinished() ? resume(event_folder, nullptr, options_, hooks)
                                                       : run_into(event_folder, config_, options_, hooks);
   began_ = true;
@@ -124,11 +144,15 @@ bool SequenceSession::run_event() {
                     part, end_of_event(finished.result), Key("time.end_s"),
                     Key("material.stiffness_damping_s"), what_was_kept(folder_));
   sequence_->take(finished.result);
+  sums_.push_back(files::sha256_of_file(dir / files::checksum_list));
   return true;
 }
 
 void SequenceSession::keep() {
-  checkpoints_.keep(head_, [&](results::OutputArchive& archive) { sequence_->serialize(archive); });
+  checkpoints_.keep(head_, [&](results::OutputArchive& archive) {
+    archive(sums_);
+    sequence_->serialize(archive);
+  });
 }
 
 void SequenceSession::write(const std::string& end, const Status& status) {

@@ -201,6 +201,15 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
   EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-11 * largest);
 }
 
+TEST(Sequence, APusherNeedsNodes) {
+  auto config = sequence_case(2);
+  config.plate.corner = mesh::Corner::none;
+  config.plate.coarsenings = 1;
+  config.plate.fine_height_m = 0.02;
+  config.plate.pusher = {0.0695, 0.0745};
+  EXPECT_THAT(error_of([&] { Sequence(config, test::go_on); }), HasSubstr("no node lies between"));
+}
+
 TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
   // Turned by half a turn the two are each other, and the shear is the same.
   auto config = sequence_case(3);
@@ -287,6 +296,43 @@ TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
   stop = false;
   resume_sequence_in(dir);
   EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+}
+
+TEST(SequenceInAFolder, FinishedEventsThatWereChangedAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto dir = folder / "out", events = dir / "unfinished" / "events";
+  EXPECT_THROW(start_sequence(dir, sequence_case(3), stopping_at("event 3", 100)), Interrupted);
+  const auto expect_refused = [&](const char* told) {
+    EXPECT_THAT(error_of([&] { resume_sequence_in(dir); }), HasSubstr(told));
+  };
+  const auto swap = [&] {
+    fs::rename(events / "0001", events / "other");
+    fs::rename(events / "0002", events / "0001");
+    fs::rename(events / "other", events / "0002");
+  };
+  swap();
+  expect_refused("0001: was changed since it was finished");
+  swap();
+  fs::rename(events / "0002", folder / "0002");
+  expect_refused("0002: was changed since it was finished");
+  fs::rename(folder / "0002", events / "0002");
+  const auto text = test::read_file(events / "0001" / "energy.csv");
+  test::write_file(events / "0001" / "energy.csv", text + "1");
+  expect_refused("energy.csv");
+  test::write_file(events / "0001" / "energy.csv", text);
+  resume_sequence_in(dir);
+  EXPECT_TRUE(is_complete(dir));
+}
+
+TEST(SequenceInAFolder, PagesOfAPartOfItAreNoResults) {
+  const test::TemporaryFolder folder;
+  const auto dir = folder / "out";
+  EXPECT_THROW(start_sequence(dir, sequence_case(2), stopping_at("event 2", 100)), Interrupted);
+  for (const auto& place : {dir, dir / "unfinished"})
+    test::write_file(place / "report.html", "<!DOCTYPE html><!-- slipfront report -->\n");
+  resume_sequence_in(dir);
+  EXPECT_TRUE(is_complete(dir));
+  EXPECT_FALSE(fs::exists(dir / "report.html"));
 }
 
 TEST(SequenceInAFolder, AnEventThatDoesNotComeToRestIsRefusedAndKept) {
