@@ -476,10 +476,24 @@ void require_same_case(const input::Case& wanted, const std::filesystem::path& d
                "the table of its friction");
 }
 
+namespace {
+
+/// Whether all files are there that a folder's list of checksums names, and those of the lists among them.
+bool has_all(const std::filesystem::path& dir) {
+  const auto sums = files::read_checksums(dir);
+  return !sums.empty() && std::ranges::all_of(sums, [&](const auto& named) {
+    const auto file = dir / named.first;
+    if (!files::is_there(file)) return false;
+    return file.filename() != files::checksum_list || has_all(file.parent_path());
+  });
+}
+
+}  // namespace
+
 bool is_complete(const std::filesystem::path& dir) {
   const auto is_there = [&](const char* name) { return files::is_there(dir / name); };
-  return is_there(files::checksum_list) &&
-         (is_there(sequence_file) || (is_there("run.json") && is_there(results::history_file)));
+  if (is_there(sequence_file)) return has_all(dir);
+  return is_there(files::checksum_list) && is_there("run.json") && is_there(results::history_file);
 }
 
 }  // namespace slipfront::run

@@ -322,6 +322,8 @@ TEST(SequenceInAFolder, FinishedEventsThatWereChangedAreRefused) {
   test::write_file(events / "0001" / "energy.csv", text);
   resume_sequence_in(dir);
   EXPECT_TRUE(is_complete(dir));
+  fs::remove(dir / "events" / "0003" / "interface.h5");
+  EXPECT_FALSE(is_complete(dir));
 }
 
 TEST(SequenceInAFolder, PagesOfAPartOfItAreNoResults) {
