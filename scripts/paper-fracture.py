@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 import matplotlib
 import numpy as np
 import slipfront
-from shared import between_marks, checked, renew, run, write_figure
+from shared import G_over_Gamma, between_marks, checked, correlation, renew, run, write_figure
 from slipfront.figures import style
 
 EVENTS = {
@@ -41,12 +41,6 @@ class MainFront:
     G_over_Gamma: np.ndarray  # of the crack at rest
 
 
-def along(front: np.ndarray, x_m: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values at other places of the front, NaN beyond them."""
-    order = np.argsort(x_m)
-    return np.interp(front, x_m[order], values[order], left=np.nan, right=np.nan)
-
-
 def main_front(event: str, size_m: float, case: Path, folder: Path) -> MainFront:
     result = slipfront.run(
         case, {"plate.element_size_m": size_m, "output.snapshot_times_s": []}, output=folder, progress=False
@@ -55,9 +49,6 @@ def main_front(event: str, size_m: float, case: Path, folder: Path) -> MainFront
     ids, counts = np.unique(result.fracture.front_id, return_counts=True)
     is_main = result.fracture.front_id == ids[counts.argmax()]
     points, fronts = (data.isel(point=is_main.to_numpy()) for data in (result.fracture, result.fronts))
-    predicted = slipfront.predict_fronts(result)
-    same_way = predicted.isel(point=(predicted.direction == points.direction[0]).to_numpy())
-    ratio = same_way.G_static_J_per_m2 / same_way.fracture_energy_J_per_m2
     return MainFront(
         event,
         size_m,
@@ -66,13 +57,8 @@ def main_front(event: str, size_m: float, case: Path, folder: Path) -> MainFront
         (points.stress_drop_Pa / (points.peak_t_Pa - points.residual_t_Pa)).to_numpy(),
         points.breakdown_work_J_per_m2.where(points.breakdown_complete == 1).to_numpy(),
         points.cohesive_zone_m.to_numpy(),
-        along(points.x_m.to_numpy(), same_way.x_m.to_numpy(), ratio.to_numpy()),
+        G_over_Gamma(result, points.x_m.to_numpy(), int(points.direction[0])),
     )
-
-
-def correlation(a: np.ndarray, b: np.ndarray) -> str:
-    both = np.isfinite(a) & np.isfinite(b)
-    return f"{slipfront.rank_correlation(a[both], b[both]):.2f}" if both.sum() > 2 else "-"
 
 
 def table(fronts: list[MainFront]) -> str:

@@ -12,8 +12,9 @@ from tempfile import TemporaryDirectory
 import matplotlib
 import numpy as np
 import slipfront
-from shared import between_marks, checked, renew, run, write_figure
+from shared import G_over_Gamma, between_marks, checked, correlation, renew, run, write_figure
 from slipfront.figures import style
+from slipfront.figures.bases import PAPER
 
 MU_K = (0.6, 1.0)
 COLOURS = dict(zip(MU_K, ("#0072b2", "#d55e00"), strict=True))
@@ -22,8 +23,6 @@ EVENTS = 100
 LONG_M = 0.02  # of fronts whose speeds are drawn
 DRAWN = 12  # global events of which they are
 RISE_TO, FASTEST = 2.5, 3.0  # drawn; over c_L
-# The paper's fit of its Fig. 6: V/c_L = a + b exp(-c sqrt((U_r - U_s)/U_s)).
-FIT_A, FIT_B, FIT_C = 0.76, 1.80, 3.05
 CHANGES = {
     "sequence.max_events": EVENTS,
     "loading.shear_speed_over_c_L": 1e-9,
@@ -37,7 +36,7 @@ CHANGES = {
 class Front:
     """A long front. Arrays: [points]"""
 
-    event: int  # from 1
+    event: int  # of those drawn, from 0
     rise: np.ndarray  # of the energy density
     speed: np.ndarray  # over c_L
     G_over_Gamma: np.ndarray  # of the crack at rest
@@ -60,17 +59,6 @@ class Loaded:
         return int(np.argmax(self.column("is_global") == 1))
 
 
-def G_over_Gamma(event: slipfront.OpenRun, begin_x_m: float, x_m: np.ndarray, direction: int) -> np.ndarray:
-    """Along a front, by what friction took in the event; NaN beyond what is predicted."""
-    predicted = slipfront.predict_fronts(event, at_x_m=begin_x_m)
-    same_way = predicted.isel(point=(predicted.direction == direction).to_numpy())
-    if same_way.sizes["point"] == 0:
-        return np.full(len(x_m), np.nan)
-    order = np.argsort(same_way.x_m.to_numpy())
-    ratio = (same_way.G_static_J_per_m2 / same_way.fracture_energy_J_per_m2).to_numpy()
-    return np.interp(x_m, same_way.x_m.to_numpy()[order], ratio[order], left=np.nan, right=np.nan)
-
-
 def long_fronts(sequence: slipfront.OpenSequence) -> list[Front]:
     found: list[Front] = []
     for event, begin_x_m, is_global in zip(
@@ -87,7 +75,7 @@ def long_fronts(sequence: slipfront.OpenSequence) -> list[Front]:
                     number,
                     (points.U_r_J_per_m3 / points.U_s_J_per_m3 - 1).to_numpy(),
                     points.v_tip_m_per_s.to_numpy() / event.info["wave_speeds"]["c_L_m_per_s"],
-                    G_over_Gamma(event, begin_x_m, x_m, int(np.sign(x_m[-1] - x_m[0]))),
+                    G_over_Gamma(event, x_m, int(np.sign(x_m[-1] - x_m[0])), begin_x_m),
                 )
             )
     return found
@@ -104,11 +92,11 @@ def loaded(mu_k: float, page: Path, folder: Path) -> Loaded:
     return Loaded(mu_k, sequence, long_fronts(sequence))
 
 
-def correlation(fronts: list[Front], name: str) -> str:
-    a = np.concatenate([getattr(f, name) for f in fronts])
-    b = np.concatenate([f.speed for f in fronts])
-    both = np.isfinite(a) & np.isfinite(b)
-    return f"{slipfront.rank_correlation(a[both], b[both]):.2f}" if both.sum() > 2 else "-"
+def with_speed(fronts: list[Front], name: str) -> str:
+    """Correlation over all fronts."""
+    return correlation(
+        np.concatenate([getattr(f, name) for f in fronts]), np.concatenate([f.speed for f in fronts])
+    )
 
 
 def table(plates: list[Loaded]) -> str:
@@ -128,7 +116,7 @@ def table(plates: list[Loaded]) -> str:
             f"| {p.mu_k} | {n} | {longest} | {most:.3f}, {most / LOCAL:.2f} "
             f"| {later.sum()} of {len(before) - n - 1} | {np.median(before[later]):.3f} "
             f"| {np.median(after[later]):.3f} | {1e6 * np.median(p.column('mean_slip_m')[later]):.0f} "
-            f"| {correlation(p.fronts, 'rise')} | {correlation(p.fronts, 'G_over_Gamma')} |\n"
+            f"| {with_speed(p.fronts, 'rise')} | {with_speed(p.fronts, 'G_over_Gamma')} |\n"
         )
     return text
 
@@ -156,7 +144,8 @@ def draw(plates: list[Loaded], picture: Path) -> None:
                 rise.plot(f.rise, f.speed, ".", **marker)
                 energy.plot(f.G_over_Gamma, f.speed, ".", **marker)
         x = np.linspace(0, RISE_TO, 100)
-        rise.plot(x, FIT_A + FIT_B * np.exp(-FIT_C * np.sqrt(x)), color="0.6", lw=1)
+        a, b, c, _ = PAPER
+        rise.plot(x, a + b * np.exp(-c * np.sqrt(x)), color="0.6", lw=1)
         force.axhline(LOCAL, color="0.6", lw=0.6)
         force.set(xlabel="displacement of the top edge (mm)", ylabel="F_S/F_N", ylim=(0, 1.4))
         force.legend(fontsize=6)

@@ -15,6 +15,8 @@ __all__ = ["DataError", "checked", "read_text", "write_figure"]  # handed on
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
+import numpy as np
+import slipfront
 from slipfront import command
 from slipfront.figures.picture import checked, write_figure
 from slipfront.files import DataError, read_json, read_text
@@ -75,6 +77,27 @@ def write_pages(folder: Path, pages: dict[str, str]) -> None:
     with command.publishing_into(folder) as made:
         for name, text in pages.items():
             (made / name).write_bytes(text.encode())
+
+
+def G_over_Gamma(
+    run: slipfront.OpenRun, x_m: np.ndarray, direction: int, at_x_m: float | None = None
+) -> np.ndarray:
+    """Of a crack at rest that grows from `at_x_m`, along a front, by what friction took in its run. NaN
+    beyond what is predicted."""
+    predicted = slipfront.predict_fronts(run, at_x_m=at_x_m)
+    same_way = predicted.isel(point=(predicted.direction == direction).to_numpy())
+    if same_way.sizes["point"] == 0:
+        return np.full(len(x_m), np.nan)
+    ratio = same_way.G_static_J_per_m2 / same_way.fracture_energy_J_per_m2
+    order = np.argsort(same_way.x_m.to_numpy())
+    known = same_way.x_m.to_numpy()[order], ratio.to_numpy()[order]
+    return np.interp(x_m, *known, left=np.nan, right=np.nan)
+
+
+def correlation(a: np.ndarray, b: np.ndarray) -> str:
+    """Of ranks, where both are known."""
+    both = np.isfinite(a) & np.isfinite(b)
+    return f"{slipfront.rank_correlation(a[both], b[both]):.2f}" if both.sum() > 2 else "-"
 
 
 def renew(page: Path, change: Callable[[str], str]) -> None:

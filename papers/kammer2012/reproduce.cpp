@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "papers/kammer2012/reproduce.hpp"
 
-#include <algorithm>
 #include <iterator>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -71,10 +70,8 @@ class Runner {
                                                  [](std::size_t, const record::SequenceEvent&) {});
     wanted(named.name);
     const auto& friction = named.config.friction;
-    const auto strongest =
-        std::ranges::max_element(finished.loading, {}, &record::LoadingRow::shear_over_normal);
     return {interface::static_coefficient(friction), interface::kinetic_coefficient(friction),
-            strongest->shear_over_normal, finished.events.size()};
+            record::strongest(finished.loading).shear_over_normal, finished.events.size()};
   }
 
   const run::Counts& counts() const { return batch_.counts(); }

@@ -558,20 +558,20 @@ def is_sequence(folder: Path) -> bool:
     return belongs(place / SEQUENCE)
 
 
-def read_place(folder: Path, told: str = RUN) -> Place:
-    """The complete results in the folder of a run or, where there are none, those in its unfinished/. `told`:
-    the file that tells of them, which a sequence has another of."""
+def read_place(folder: Path, status_file: str = RUN) -> Place:
+    """The complete results in the folder of a run or, where there are none, those in its unfinished/; of a
+    sequence with SEQUENCE as status_file."""
     if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; name the output folder of a run")
-    if told == RUN and is_sequence(folder):
+    if status_file == RUN and is_sequence(folder):
         raise DataError(f"{folder}: is of a sequence of events; name the folder of one of them, in events/")
     place, notes = folder, []
     if is_folder(folder / UNFINISHED):
-        if belongs(folder / told):
+        if belongs(folder / status_file):
             notes = [f"{folder / UNFINISHED}: another run, not finished: the figures show the complete one"]
         else:
             place = folder / UNFINISHED
-    file = place / told
+    file = place / status_file
     info = read_json_table(result_file(file))
     status = info.get("status", OLD_ENDS.get(str(info.get("end")), "complete"))
     reason = info.get("reason", "")

@@ -207,9 +207,8 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
               return run::run_sequence_into(folder, given->config(), options.session, hooks, done);
             });
   if (options.quiet) return;
-  const auto strongest =
-      std::ranges::max_element(finished.loading, {}, &record::LoadingRow::shear_over_normal);
-  print("largest F_S/F_N {:.4f}, before event {}\n", strongest->shear_over_normal, strongest->n_events);
+  const auto& strongest = record::strongest(finished.loading);
+  print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal, strongest.n_events);
   print("ended after {} events: {}\n", finished.events.size(), finished.end);
   print("results: {}\n", folder.dir().string());
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "base/numbers.hpp"
 #include "record/column.hpp"
@@ -63,6 +65,11 @@ inline constexpr Column<LoadingRow, double> wave_loss = {
 /// What the terms leave open, see imbalance_J_per_m of energies.
 inline double imbalance_J_per_m(const LoadingRow& now, const LoadingRow& start) {
   return imbalance_J_per_m(now.energies, start.energies) + now.wave_loss_J_per_m;
+}
+
+/// The row of the largest ratio of shear to normal force. @pre there are rows
+inline const LoadingRow& strongest(std::span<const LoadingRow> rows) {
+  return *std::ranges::max_element(rows, {}, &LoadingRow::shear_over_normal);
 }
 
 /// An event of a sequence, in numbers.

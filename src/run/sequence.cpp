@@ -85,7 +85,9 @@ double Sequence::strain_energy_J_per_m(const statics::Equilibrium& state) const 
 LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
   LoadingRow row = loading_.empty() ? LoadingRow{} : loading_.back();
   row.phase = phase;
-  row.n_events = static_cast<std::int32_t>(events_.size());
+  const bool is_of_event =
+      phase != LoadingPhase::tilted && phase != LoadingPhase::loaded;  // not yet among them
+  row.n_events = static_cast<std::int32_t>(events_.size()) + (is_of_event ? 1 : 0);
   row.shear_m = shear_m;
   row.time_s = time_s(shear_m);
   row.energies.time_s = row.time_s;
@@ -117,7 +119,6 @@ void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
   auto loaded = row(phase, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
   loaded.energies.strain = strain_energy_J_per_m(state);
-  if (phase == LoadingPhase::event_begins) loaded.n_events += 1;
   loading_.push_back(loaded);
 }
 
@@ -165,7 +166,6 @@ void Sequence::take(const Result& result) {
   held_.moved_m += mean_m;
   held_.shear_m = shear_m - held_.moved_m;
   auto ends = row(LoadingPhase::slip_ends, shear_m, tractions_at_end);
-  ends.n_events += 1;
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
   ends.energies.kinetic = last.kinetic;
@@ -175,7 +175,6 @@ void Sequence::take(const Result& result) {
 
   rest();
   auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
-  rests.n_events += 1;
   rests.energies.strain = strain_energy_J_per_m(at_rest_);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
   loading_.push_back(rests);

@@ -18,6 +18,7 @@ namespace {
 
 /// The kind of work that an event's folder holds; it is gone on with as part of its sequence.
 constexpr const char* event_work = "event of a sequence";
+constexpr const char* events_folder = "events";
 
 /// A sequence on rank 0; its events are runs on all ranks.
 class SequenceSession {
@@ -46,7 +47,7 @@ class SequenceSession {
   void write(const std::string& end, const Status& status);
   void fail(const char* status, const std::string& reason) noexcept;
   std::filesystem::path event_dir(std::size_t k) const {
-    return folder_.unfinished() / "events" / fmt::format("{:04}", k);
+    return folder_.unfinished() / events_folder / fmt::format("{:04}", k);
   }
 
   results::ResultFolder& folder_;
@@ -58,7 +59,6 @@ class SequenceSession {
   CheckpointHead head_;
   std::unique_ptr<Sequence> sequence_;
   std::vector<std::string> sums_;  ///< of the lists of checksums of the events that are done
-  bool began_ = false;             ///< before that a new sequence has nothing to keep
 };
 
 FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed) {
@@ -84,7 +84,8 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
     fail("blew_up", error.what());
     throw;
   } catch (const std::exception& error) {
-    if (resumed || began_)
+    // An event that came to nothing has left no folder.
+    if (resumed || files::is_there(folder_.unfinished() / events_folder))
       fail("failed", error.what());
     else
       folder_.abandon();
@@ -133,7 +134,6 @@ bool SequenceSession::run_event() {
   results::ResultFolder event_folder(dir, event_work, &folder_);
   const auto finished = event_folder.has_unfinished() ? resume(event_folder, nullptr, options_, hooks)
                                                       : run_into(event_folder, config_, options_, hooks);
-  began_ = true;
   const auto& event = finished.result.event;
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
@@ -172,23 +172,14 @@ void SequenceSession::fail(const char* status, const std::string& reason) noexce
 FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::Case& config,
                                    const SessionOptions& options, const SessionHooks& hooks,
                                    const EventDone& done) {
-  try {
-    folder.begin();
-    write_case(folder.unfinished(), config);
-  } catch (const WriteError&) {
-    folder.abandon();
-    throw;
-  }
+  begin_work(folder, config);
   return SequenceSession(folder, config, options, hooks, done).run({}, false);
 }
 
 FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
                                  const SessionOptions& options, const SessionHooks& hooks,
                                  const EventDone& done) {
-  const auto config = unfinished_case(folder, expected);
-  auto kept = Checkpoints(folder.state()).last(hooks.note);
-  if (kept) require_of_same_work(kept->head, folder, config);
-  files::write_text(folder.unfinished() / case_file, resolved_text(config));
+  auto [config, kept] = take_up(folder, expected, hooks.note);
   return SequenceSession(folder, config, options, hooks, done).run(std::move(kept), true);
 }
 

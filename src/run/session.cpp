@@ -382,8 +382,7 @@ Finished run_shared(results::ResultFolder& folder, const input::Case& config, co
 
 }  // namespace
 
-Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
-                  const SessionHooks& hooks) {
+void begin_work(results::ResultFolder& folder, const input::Case& config) {
   try {
     folder.begin();
     write_case(folder.unfinished(), config);
@@ -391,16 +390,17 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
     folder.abandon();
     throw;
   }
+}
+
+Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+                  const SessionHooks& hooks) {
+  begin_work(folder, config);
   return run_shared(folder, config, options, hooks, false, {});
 }
 
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks) {
-  const auto config = unfinished_case(folder, expected);
-  auto kept = Checkpoints(folder.state()).last(hooks.note);
-  if (kept) require_of_same_work(kept->head, folder, config);
-  // As it was, however it was written meanwhile.
-  files::write_text(folder.unfinished() / case_file, resolved_text(config));
+  auto [config, kept] = take_up(folder, expected, hooks.note);
   return run_shared(folder, config, options, hooks, true, std::move(kept));
 }
 
@@ -420,15 +420,23 @@ CheckpointHead checkpoint_head(const input::Case& config) {
   return head;
 }
 
-void require_of_same_work(const CheckpointHead& kept, const results::ResultFolder& folder,
-                          const input::Case& config) {
-  const auto dir = folder.unfinished();
-  if (kept.program != program_identity())
-    throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
-                    dir.string(), files::one_line(kept.program), program_identity());
-  require_same(resolved_text(config), kept.case_text, (dir / case_file).string());
-  require_unchanged(config.prestress.table.text, kept.prestress_table, config.prestress.file);
-  require_unchanged(config.friction_along_x.table.text, kept.friction_table, config.friction_along_x.file);
+UnfinishedWork take_up(const results::ResultFolder& folder, const input::Case* expected,
+                       const std::function<void(const std::string&)>& note) {
+  UnfinishedWork work{unfinished_case(folder, expected), Checkpoints(folder.state()).last(note)};
+  const auto& config = work.config;
+  const auto file = folder.unfinished() / case_file;
+  const auto text = resolved_text(config);
+  if (work.kept) {
+    const auto& head = work.kept->head;
+    if (head.program != program_identity())
+      throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
+                      folder.unfinished().string(), files::one_line(head.program), program_identity());
+    require_same(text, head.case_text, file.string());
+    require_unchanged(config.prestress.table.text, head.prestress_table, config.prestress.file);
+    require_unchanged(config.friction_along_x.table.text, head.friction_table, config.friction_along_x.file);
+  }
+  files::write_text(file, text);  // as it was, however it was written meanwhile
+  return work;
 }
 
 void take_part(Processes& processes) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -65,15 +66,22 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks);
 
+/// Begins the work of a case in its folder.
+/// @throws WriteError, nothing being kept
+void begin_work(results::ResultFolder& folder, const input::Case& config);
 /// The case of the work that was left unfinished in a folder.
 /// @param expected  a case that it must be, or null
 /// @throws UserError where there is none, or it is another case
 input::Case unfinished_case(const results::ResultFolder& folder, const input::Case* expected);
-/// Refuses a checkpoint of another program or case.
-/// @param config  unfinished_case
-/// @throws UserError
-void require_of_same_work(const CheckpointHead& kept, const results::ResultFolder& folder,
-                          const input::Case& config);
+/// That work, with its last checkpoint that is intact, or null.
+struct UnfinishedWork {
+  input::Case config;
+  std::unique_ptr<Checkpoints::Checkpoint> kept;
+};
+/// @param note  receives a message for each damaged checkpoint
+/// @throws UserError as unfinished_case, and where the checkpoint is of another program or case
+UnfinishedWork take_up(const results::ResultFolder& folder, const input::Case* expected,
+                       const std::function<void(const std::string&)>& note);
 /// Of checkpoints of a case.
 CheckpointHead checkpoint_head(const input::Case& config);
 

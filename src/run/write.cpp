@@ -373,8 +373,7 @@ void write_sequence(const std::filesystem::path& dir, const input::Case& config,
   json["wave_speeds"] = speeds_json(wave_speeds(config.material));
   json["events"] = events.size();
   if (!loading.empty()) {
-    const auto strongest = std::ranges::max_element(loading, {}, &record::LoadingRow::shear_over_normal);
-    json["largest_friction"] = loads_json(*strongest);
+    json["largest_friction"] = loads_json(record::strongest(loading));
     json["last"] = loads_json(loading.back());
     json["imbalance_over_largest_energy"] = largest_imbalance(loading);
   }

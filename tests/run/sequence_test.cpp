@@ -298,6 +298,21 @@ TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
   EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
 }
 
+TEST(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
+  const test::TemporaryFolder folder;
+  const auto config = sequence_case(2);
+  SessionHooks failing = undisturbed;
+  failing.progress = [](const char* part, std::int64_t step, std::int64_t) {
+    if (part == std::string("event 1") && step >= 200) throw WriteError("the disk is full");
+  };
+  const auto dir = folder / "out";
+  EXPECT_THROW(start_sequence(dir, config, failing), WriteError);
+  EXPECT_TRUE(fs::exists(dir / "unfinished" / "events" / "0001" / "unfinished" / "interface.h5"));
+  resume_sequence_in(dir);
+  start_sequence(folder / "whole", config);
+  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+}
+
 TEST(SequenceInAFolder, FinishedEventsThatWereChangedAreRefused) {
   const test::TemporaryFolder folder;
   const auto dir = folder / "out", events = dir / "unfinished" / "events";
