@@ -113,6 +113,8 @@ struct Sequence {
   int max_events = 1;
   double end_s = infinity;  ///< of the loading, from the tilt on
   bool to_global_sliding = false;
+  /// Under a law with a state; without it that of inertia_slip_rate_m_per_s.
+  std::optional<double> inertia_slip_rate_m_per_s;
 };
 
 /// One run, completely. Every member is an entry of the schema (input/schema.hpp).

@@ -298,15 +298,17 @@ Condition direct() {
           [](const Case& c) { return c.loading.method == LoadingMethod::direct; }};
 }
 Condition loaded_on() {
-  return {Message("{} = direct, {} = spontaneous and a {} without a state", Key("loading.method"),
-                  Key("event.kind"), Key("friction.law")),
+  return {Message("{} = direct and {} = spontaneous", Key("loading.method"), Key("event.kind")),
           [](const Case& c) {
-            return c.loading.method == LoadingMethod::direct && c.event == EventKind::spontaneous &&
-                   !c.friction.has_state();
+            return c.loading.method == LoadingMethod::direct && c.event == EventKind::spontaneous;
           }};
 }
 Condition in_sequence() {
   return {Message("{} > 1", Key("sequence.max_events")), is_sequence};
+}
+Condition in_slow_sequence() {
+  return {Message("{} > 1 and a {} with a state", Key("sequence.max_events"), Key("friction.law")),
+          [](const Case& c) { return is_sequence(c) && c.friction.has_state(); }};
 }
 Condition rounded_by(Corner corner, const char* word) {
   return {Message("{} = {}", Key("plate.corner"), word),
@@ -648,6 +650,10 @@ void add_sequence(Entries& all) {
       "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
+  sequence.only_with = in_slow_sequence();
+  sequence.optional("inertia_slip_rate_m_per_s", &Sequence::inertia_slip_rate_m_per_s, above(0), 1e-3,
+                    "slip rate of the fastest node at which an event begins; it ends when for time.quiet_s "
+                    "none is faster than half of it. Without it a tenth of friction.tip_slip_rate_m_per_s");
 }
 
 void add_time(Entries& all) {

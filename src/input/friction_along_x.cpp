@@ -159,6 +159,7 @@ void require_one_initial_state(const Case& config, const std::vector<FrictionLaw
       std::ranges::count_if(laws, [](const auto& law) { return law.parameter("theta_i_s") > 0; });
   if (given == 0) return;
   const auto place = in_friction_file(along_x.file);
+  if (is_sequence(config)) return;
   if (!is_prestressed(config) || !config.prestress.file.empty())
     throw UserError("{}: theta_i_s needs {} = prestress and {}, not a table; remove the column", place,
                     Key("loading.method"), Key("prestress.p_Pa"));
@@ -210,6 +211,15 @@ double tip_slip_rate_m_per_s(const Case& config) {
   if (has_base_body(config)) admittance += solid::shear_admittance_m_per_Pa_s(base_material(config));
   return std::max(admittance * config.friction.parameter("a") * nominal_pressure_Pa(config),
                   10 * config.friction.parameter("V_i_m_per_s"));
+}
+
+double inertia_slip_rate_m_per_s(const Case& config) {
+  constexpr double of_tip = 0.1;
+  return config.sequence.inertia_slip_rate_m_per_s.value_or(of_tip * tip_slip_rate_m_per_s(config));
+}
+
+double slow_slip_rate_m_per_s(const Case& config) {
+  return 0.5 * inertia_slip_rate_m_per_s(config);
 }
 
 interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m,

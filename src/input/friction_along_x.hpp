@@ -24,6 +24,10 @@ std::vector<interface::FrictionLaw> friction_at(const Case& config, const std::v
 /// direct effect a p/V is as steep as the bodies' radiation damping, at least 10 V_i.
 /// @pre the law has a state
 double tip_slip_rate_m_per_s(const Case& config);
+/// Slip rate of the fastest node at which an event begins in a sequence of a law with a state, and up to
+/// which equilibria follow it: half of that.
+double inertia_slip_rate_m_per_s(const Case& config);
+double slow_slip_rate_m_per_s(const Case& config);
 
 /// Contact and friction of some of the interface nodes at x_m.
 /// @throws UserError as friction_at

@@ -63,6 +63,7 @@ void check_initial_state(const Case& config) {
   const auto& law = config.friction;
   const Key theta("friction.theta_i_s"), V("friction.V_i_m_per_s"), t("prestress.t_Pa");
   if (!law.has_state() || law.parameter(leaf_of(theta.name)) == 0) return;
+  if (is_sequence(config)) return;  // V follows
   if (!is_prestressed(config) || !config.prestress.file.empty())
     throw UserError(
         "{} needs {} = prestress and {}, not a table: elsewhere it follows from t and {}; remove it", theta,

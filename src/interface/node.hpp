@@ -200,9 +200,7 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, 
 
   V& psi = n.law_states[0];
   const V v_trial = n.v_x_m_per_s;
-  // Below the least there is no friction to speak of, and above it exponentials stay in range.
-  constexpr double least = -150;
-  const V of_psi = psi * law.per_a, s = select(of_psi < least, V{} + least, of_psi);
+  const V of_psi = psi * law.per_a, s = select(of_psi < least_state, V{} + least_state, of_psi);
   const V a_p = law.a * p, per_a_p = 1 / a_p;
   // Of the mass over that of the friction, a p/V.
   const V softness = absolute(last_rate) * impedance_x * per_a_p;

@@ -8,6 +8,9 @@
 // The implicit equation of a node under a rate-and-state law, for a value type V.
 namespace slipfront::interface {
 
+/// Below it psi/a leaves no friction to speak of, and above it exponentials stay in range.
+inline constexpr double least_state = -150;
+
 /// The y >= 0 of y + k (exp(y - s) - exp(-y - s)) = Y, Y >= 0, k > 0: y is tau/(a p), s is psi/a, and the
 /// left side the traction and what the mass takes of the trial one, Y. It rises with y, ever more steeply, so
 /// that there is one root, between 0 and Y, and Halley's steps from above come down to it without passing it.

@@ -105,6 +105,7 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
   }
   std::ranges::fill(interface_.intact, 1.0);
   start_contact(contact_, interface_);
+  if (!loads.law_states.empty()) interface_.law_states = loads.law_states;
   // A patch that is weakened now loses its strength at the rate of the regularisation.
   set_loads(std::move(loads));
 }
@@ -188,6 +189,8 @@ SlipRates Coupling::slip_rates() const {
     const double v = std::abs(interface_.slip_rate_m_per_s[i]);
     rates.finite &= std::isfinite(v);
     rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, v);
+    if (interface_.p_Pa[i] > 0)
+      rates.fastest_in_contact_m_per_s = std::max(rates.fastest_in_contact_m_per_s, v);
     if (interface_.slipping[i] != 0)
       rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, v);
   }

@@ -35,6 +35,8 @@ struct Loads {
   struct Rate {
     double t_Pa_per_s = 0, p_Pa_per_s = 0;
   } prestress_rate = {};
+  /// States of a law that has some, [states] of [interface nodes]; empty: as the law begins.
+  std::vector<std::vector<double>> law_states = {};
 };
 
 /// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface

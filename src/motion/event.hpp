@@ -43,7 +43,7 @@ struct Event {
   record::SlipRecord record;
   record::Breakdown breakdown;
   record::TipSlip tip_slip;
-  record::History last_row;                ///< of the history, without places and states of the law
+  record::History last_row;                ///< of the history, without places
   record::History history;                 ///< without an output
   std::vector<Snapshot> snapshots;         ///< without an output
   record::ProbeRecord probes;              ///< without an output
@@ -67,6 +67,7 @@ struct EventSetup {
   int halo = 0;  ///< nodes on each side whose tractions are kept at an onset
   /// The event ends when nodes between these places stick, see StickCriterion; none: see RestCriterion.
   std::optional<Stretch> sticks_within = {};
+  double slow_m_per_s = infinity;  ///< with that: slip rate of an equilibrium
 };
 
 /// An event under way: steps a started stepper, with the observers of an event, until the end time, or until

@@ -24,16 +24,18 @@ struct Loads;
 struct SlipRates {
   bool finite = true;
   double fastest_m_per_s = 0;
-  double fastest_slipping_m_per_s = 0;  ///< of nodes in contact that slip
+  double fastest_in_contact_m_per_s = 0;
+  double fastest_slipping_m_per_s = 0;  ///< of nodes in contact that count as slipping
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(finite, fastest_m_per_s, fastest_slipping_m_per_s);
+    archive(finite, fastest_m_per_s, fastest_in_contact_m_per_s, fastest_slipping_m_per_s);
   }
   /// Those of other nodes.
   void add(const SlipRates& more) {
     finite &= more.finite;
     fastest_m_per_s = std::max(fastest_m_per_s, more.fastest_m_per_s);
+    fastest_in_contact_m_per_s = std::max(fastest_in_contact_m_per_s, more.fastest_in_contact_m_per_s);
     fastest_slipping_m_per_s = std::max(fastest_slipping_m_per_s, more.fastest_slipping_m_per_s);
   }
 };

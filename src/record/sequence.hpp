@@ -19,9 +19,10 @@ enum class LoadingPhase : std::uint8_t {
   slip_ends,     ///< the motion with which an event ends
   at_rest,       ///< static equilibrium with the interface where that has left it
   loaded,        ///< static equilibrium at the end of the loading, before a next event
+  creeps,        ///< slow slip between events, under a law with a state
 };
 inline constexpr const char* name(LoadingPhase phase) {
-  constexpr std::array names = {"tilted", "event_begins", "slip_ends", "at_rest", "loaded"};
+  constexpr std::array names = {"tilted", "event_begins", "slip_ends", "at_rest", "loaded", "creeps"};
   return names[static_cast<std::size_t>(phase)];
 }
 
@@ -34,6 +35,7 @@ struct LoadingRow {
   double normal_force_N_per_m = 0, shear_force_N_per_m = 0;
   double shear_over_normal = 0;
   double normal_force_x_m = 0;
+  double fastest_slip_rate_m_per_s = 0;
   /// What is stored, and works since the tilt; between static equilibria those of the mean forces.
   Energies energies;
   double wave_loss_J_per_m = 0;
@@ -41,13 +43,13 @@ struct LoadingRow {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, n_events, time_s, shear_m, normal_force_N_per_m, shear_force_N_per_m, shear_over_normal,
-            normal_force_x_m, energies, wave_loss_J_per_m);
+            normal_force_x_m, fastest_slip_rate_m_per_s, energies, wave_loss_J_per_m);
   }
 };
 
 /// The columns of a row but for its phase, its events and the terms of its energies, which come before the
 /// last one.
-inline constexpr std::array<Column<LoadingRow, double>, 6> loading_fields = {{
+inline constexpr std::array<Column<LoadingRow, double>, 7> loading_fields = {{
     {"time_s", "s", "time since the tilt, in which the top edge moves at its speed", &LoadingRow::time_s},
     {"shear_m", "m", "displacement of the top edge or the pusher to +x since the tilt", &LoadingRow::shear_m},
     {"normal_force_N_per_m", "N/m", "sum of the pressure over the interface",
@@ -57,9 +59,12 @@ inline constexpr std::array<Column<LoadingRow, double>, 6> loading_fields = {{
      &LoadingRow::shear_over_normal},
     {"normal_force_x_m", "m", "where along the interface the normal force acts",
      &LoadingRow::normal_force_x_m},
+    {"fastest_slip_rate_m_per_s", "m/s", "slip rate of the fastest node, of a law with a state; else 0",
+     &LoadingRow::fastest_slip_rate_m_per_s},
 }};
 inline constexpr Column<LoadingRow, double> wave_loss = {
-    "wave_loss_J_per_m", "J/m", "energy of the waves that were left at the ends of the events so far",
+    "wave_loss_J_per_m", "J/m",
+    "energy of the waves that were left at the ends of the events so far, and that slow slip has radiated",
     &LoadingRow::wave_loss_J_per_m};
 
 /// What the terms leave open, see imbalance_J_per_m of energies.

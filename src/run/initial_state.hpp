@@ -30,7 +30,9 @@ struct InitialState {
                                      ///< under a given shear force the common one
   bool prescribed = false;           ///< loading.method is prestress: no statics, no critical shear
   std::vector<double> mu_s;          ///< [interface nodes] where friction varies along x, else none
-  double critical_shear_m = 0;       ///< shear at t/p = mu_s inside, found directly
+  /// Of friction with a state, as in motion::Loads.
+  std::vector<std::vector<double>> law_states;
+  double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it
@@ -44,8 +46,8 @@ struct InitialState {
   /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, critical_shear_m,
-            n_unknowns, solver, solver_bytes, wall_s, ramp, loads);
+    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, law_states,
+            critical_shear_m, n_unknowns, solver, solver_bytes, wall_s, ramp, loads);
   }
 };
 

@@ -145,7 +145,9 @@ void release_nodes(InitialState& initial) {
 }  // namespace
 
 motion::Loads loads_of_event(const input::Case& config, const InitialState& initial) {
-  return starting_loads(config, event_state(config, initial), initial.mesh, initial.mu_s);
+  auto loads = starting_loads(config, event_state(config, initial), initial.mesh, initial.mu_s);
+  loads.law_states = initial.law_states;
+  return loads;
 }
 
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
@@ -187,7 +189,9 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
                    snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s,
                    prescribed_stress(config)},
       .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m),
-      .sticks_within = sticks_within};
+      .sticks_within = sticks_within,
+      .slow_m_per_s =
+          sticks_within && config.friction.has_state() ? input::slow_slip_rate_m_per_s(config) : infinity};
   return {stepper, setup, monitor, output, std::move(more)};
 }
 

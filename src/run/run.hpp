@@ -25,7 +25,8 @@
 
 namespace slipfront::results {
 struct RunFiles;
-}
+struct Table;
+}  // namespace slipfront::results
 
 namespace slipfront::run {
 
@@ -126,6 +127,8 @@ inline constexpr const char* friction_file = "friction.csv";
 std::string resolved_text(const input::Case& config);
 /// What the files of its rows hold. @param step_s  of its event
 results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s);
+/// What a history of its interface holds.
+results::Table history_table(const input::Case& config, const std::vector<double>& x_m);
 /// What a case's fields.vtkhdf holds besides.
 results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh);
 

@@ -8,6 +8,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "fronts/fit.hpp"
+#include "input/friction_along_x.hpp"
 #include "run/choices.hpp"
 
 namespace slipfront::run {
@@ -63,11 +64,15 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
     : config_(config),
       initial_(unloaded_state(config, processes)),
       statics_(statics_of(config_, initial_, [monitor] { return monitor(0, 0); })),
-      plate_(solid::make_operator(initial_.mesh, config.material)) {
+      plate_(solid::make_operator(initial_.mesh, config.material)),
+      monitor_(monitor) {
   if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
   describe_solver(config, statics_, initial_);
-  if (has_fracture_energy(config)) predictor_.emplace(config);
   at_rest_ = statics_.tilted();
+  if (config.friction.has_state())
+    begin_slow_slip();
+  else if (has_fracture_energy(config))
+    predictor_.emplace(config);
   loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
   loading_.back().energies.strain = strain_energy_J_per_m(at_rest_);
 }
@@ -85,13 +90,14 @@ double Sequence::strain_energy_J_per_m(const statics::Equilibrium& state) const 
 LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
   LoadingRow row = loading_.empty() ? LoadingRow{} : loading_.back();
   row.phase = phase;
-  const bool is_of_event =
-      phase != LoadingPhase::tilted && phase != LoadingPhase::loaded;  // not yet among them
+  const bool is_of_event = phase == LoadingPhase::event_begins || phase == LoadingPhase::slip_ends ||
+                           phase == LoadingPhase::at_rest;  // not yet among them
   row.n_events = static_cast<std::int32_t>(events_.size()) + (is_of_event ? 1 : 0);
   row.shear_m = shear_m;
   row.time_s = time_s(shear_m);
   row.energies.time_s = row.time_s;
   row.energies.kinetic = 0;
+  row.fastest_slip_rate_m_per_s = 0;
   double normal = 0, shear = 0, moment = 0;
   for (std::size_t k = 0; k < initial_.tributary_m.size(); ++k) {
     const double p = tractions.p_s_Pa[k] * initial_.tributary_m[k];
@@ -122,8 +128,23 @@ void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
   loading_.push_back(loaded);
 }
 
-const InitialState* Sequence::next() {
+void Sequence::begin_slow_slip() {
+  const auto model = input::contact_model(config_, interface_x_m(initial_.mesh));
+  interface::QuasiDynamicFriction friction(model, initial_.tributary_m.size(),
+                                           stability::radiation_damping_Pa_s_per_m(bodies_of(config_)));
+  held_ = {0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states()};
+  slow_ = std::make_unique<motion::QuasiDynamicSlip>(statics_, std::move(friction), initial_.tributary_m,
+                                                     top_speed_m_per_s(config_));
+}
+
+const InitialState* Sequence::next(const SlowRows& slow_rows) {
   const auto start = Clock::now();
+  if (!(slow_ ? slip_to_next(slow_rows) : stick_to_next())) return nullptr;
+  initial_.wall_s = seconds_since(start);
+  return &initial_;
+}
+
+bool Sequence::stick_to_next() {
   const double margin = config_.loading.critical_margin;
   const auto at_least = [&](statics::Equilibrium state) {
     return state.shear_m > at_rest_.shear_m ? std::move(state) : statics_.shear_by(at_rest_.shear_m);
@@ -136,14 +157,82 @@ const InitialState* Sequence::next() {
   if (time_s(initial_.spontaneous.shear_m + held_.moved_m) > end_s) {
     const double end_m = end_s * top_speed_m_per_s(config_) - held_.moved_m;
     load_to(LoadingPhase::loaded, statics_.shear_by(std::max(at_rest_.shear_m, end_m)));
-    return nullptr;
+    return false;
   }
   load_to(LoadingPhase::event_begins, initial_.spontaneous);
   for (auto* state : {&critical, &initial_.common, &initial_.spontaneous}) state->shear_m += held_.moved_m;
   if (has_forces(config_))
     initial_.loads = found_loads(config_, statics_, critical, initial_.common, initial_.tributary_m);
-  initial_.wall_s = seconds_since(start);
-  return &initial_;
+  return true;
+}
+
+statics::Equilibrium Sequence::slid_to(const motion::SlowSlip& state,
+                                       std::vector<double> u_x_per_shear) const {
+  return statics_.slid_to(state.contact, state.u_x_m, std::move(u_x_per_shear), state.shear_m);
+}
+
+LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const {
+  const auto& state = slow_->state();
+  const auto& works = slow_->works();
+  const auto equilibrium = slid_to(state, {});
+  auto now = row(phase, state.shear_m + held_.moved_m, equilibrium.tractions);
+  now.energies = from.energies;
+  now.energies.time_s = now.time_s;
+  now.energies.kinetic = 0;
+  now.energies.strain = strain_energy_J_per_m(equilibrium);
+  now.energies.top_work += works.of_load_J_per_m;
+  now.energies.friction_work += works.of_friction_J_per_m;
+  now.energies.contact_work += works.of_contact_J_per_m;
+  now.wave_loss_J_per_m = from.wave_loss_J_per_m + works.radiated_J_per_m;
+  now.fastest_slip_rate_m_per_s = state.fastest_m_per_s();
+  return now;
+}
+
+bool Sequence::slip_to_next(const SlowRows& slow_rows) {
+  // Rows of the loading are as far apart as e-folds of the fastest slip rate, those of the interface steps.
+  constexpr double row_factor = 2;
+  constexpr std::int64_t steps_per_row = 4;
+  const auto from = loading_.back();
+  const auto& state = slow_->state();
+  double row_rate_m_per_s = 0;
+  const auto u_tilted = relative(initial_, statics_.tilted());
+  const auto give_row = [&] {
+    record::History row{
+        {state.time_s}, at_rest_.tractions.x_m, state.u_x_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa,
+        {state.psi}};
+    for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += held_.moved_m - u_tilted.x_m[k];
+    slow_rows(row);
+  };
+  slow_->start(time_s(held_.shear_m + held_.moved_m), held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
+  const auto n_before = slow_->n_steps();
+  give_row();
+  const auto after_step = [&] {
+    if (!monitor_(0, 0)) throw Interrupted(statics::interrupted_in_statics);
+    if ((slow_->n_steps() - n_before) % steps_per_row == 0) give_row();
+    const double rate = state.fastest_m_per_s();
+    if (rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
+      loading_.push_back(slow_row(LoadingPhase::creeps, from));
+      row_rate_m_per_s = rate;
+    }
+    return true;
+  };
+  const bool begins =
+      slow_->slip_until(config_.sequence.end_s, input::inertia_slip_rate_m_per_s(config_), after_step);
+  give_row();
+  loading_.push_back(slow_row(begins ? LoadingPhase::event_begins : LoadingPhase::loaded, from));
+  if (!begins) return false;
+  std::vector<double> per_shear;
+  for (const double V : state.slip_rate_m_per_s) per_shear.push_back(V / top_speed_m_per_s(config_));
+  initial_.spontaneous = slid_to(state, std::move(per_shear));
+  initial_.spontaneous.shear_m += held_.moved_m;
+  for (auto& contact : initial_.spontaneous.contact)
+    if (contact == statics::Contact::slip) contact = statics::Contact::stick;
+  initial_.common = initial_.spontaneous;
+  initial_.critical_shear_m = nan;
+  initial_.law_states = {state.psi};
+  if (has_forces(config_))
+    initial_.loads = found_loads(config_, statics_, initial_.common, initial_.common, initial_.tributary_m);
+  return true;
 }
 
 void Sequence::take(const Result& result) {
@@ -173,6 +262,7 @@ void Sequence::take(const Result& result) {
   add_event_works(last, ends.energies);
   loading_.push_back(ends);
 
+  if (slow_) held_.psi = row_at_end.law_states.front();
   rest();
   auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
   rests.energies.strain = strain_energy_J_per_m(at_rest_);
@@ -182,6 +272,10 @@ void Sequence::take(const Result& result) {
 }
 
 void Sequence::rest() {
+  if (slow_) {
+    at_rest_ = statics_.slid_to(held_.contact, held_.u_x_m, {}, held_.shear_m);
+    return;
+  }
   statics_.hold(held_.contact, held_.u_x_m);
   at_rest_ = statics_.shear_by(held_.shear_m);
 }
@@ -222,8 +316,12 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
     if (const double work = result.event.breakdown.work_J_per_m2[k]; !std::isnan(work))
       e.breakdown_work_J_per_m += work * a;
   }
-  e.mean_slip_m = e.potency_m2 / e.length_m;
-  e.stress_drop_Pa = drop_N_per_m / e.length_m;
+  if (e.length_m > 0) {
+    e.mean_slip_m = e.potency_m2 / e.length_m;
+    e.stress_drop_Pa = drop_N_per_m / e.length_m;
+  } else {
+    e.is_global = 0;
+  }
   e.normal_force_N_per_m = before.normal_force_N_per_m;
   e.shear_force_N_per_m = before.shear_force_N_per_m;
   e.friction_before = before.shear_over_normal;
@@ -256,7 +354,7 @@ void Sequence::predict(record::SequenceEvent& event) const {
 }
 
 void Sequence::serialize(StateArchive& archive) {
-  archive(held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, loading_, events_);
+  archive(held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, held_.psi, loading_, events_);
   if (!archive.is_loading()) return;
   const std::size_t n = initial_.tributary_m.size();
   const auto are_finite = [](const std::vector<double>& values) {
@@ -265,10 +363,10 @@ void Sequence::serialize(StateArchive& archive) {
   require_possible(
       !events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n && are_finite(held_.u_x_m) &&
           std::isfinite(held_.shear_m) && std::isfinite(held_.moved_m) &&
-          std::ranges::max(held_.contact) <= statics::Contact::open &&
-          loading_.size() == 1 + 3 * events_.size() &&
+          std::ranges::max(held_.contact) <= statics::Contact::open && held_.psi.size() == (slow_ ? n : 0) &&
+          are_finite(held_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
           std::ranges::all_of(loading_,
-                              [](const LoadingRow& row) { return row.phase <= LoadingPhase::at_rest; }),
+                              [](const LoadingRow& row) { return row.phase <= LoadingPhase::creeps; }),
       "a sequence");
   rest();
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "motion/quasi_dynamic.hpp"
 #include "record/sequence.hpp"
 #include "run/fracture.hpp"
 #include "run/initial_state.hpp"
@@ -13,9 +16,10 @@
 
 namespace slipfront::run {
 
-/// A sample that is loaded by static equilibria from one spontaneous event to the next. Where an event has
-/// left its interface, it sticks and has its static strength again: the tractions that it carries there are
-/// those of the equilibrium with the slip so far. The statics are factorised once.
+/// A sample that is loaded from one spontaneous event to the next. Under a law without a state by static
+/// equilibria: where an event has left its interface, it sticks and has its static strength again; the
+/// tractions that it carries there are those of the equilibrium with the slip so far. Under a law with a
+/// state by quasi-dynamic slip. The statics are factorised once.
 class Sequence {
  public:
   /// @param monitor  asked between linear solutions
@@ -25,13 +29,17 @@ class Sequence {
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
+  using SlowRows = std::function<void(const record::History& row)>;
+
   /// Why no event follows, in words; empty where one does.
   std::string end() const;
   /// Loads the sample to the state in which the next event begins: the first one where t/p inside passes
   /// mu_s, by loading.critical_margin, or where the last event has left it if it does so there.
   /// @return null where that is beyond sequence.end_s, to which the sample is loaded then
   /// @throws UserError where no shear does it
-  const InitialState* next();
+  /// Under a law with a state: the first one in which a node slips at sequence.inertia_slip_rate_m_per_s.
+  /// @param slow_rows  takes rows of slow slip, their time since the tilt
+  const InitialState* next(const SlowRows& slow_rows = [](const record::History&) {});
   /// Finds the equilibrium behind the event that has begun so, and has come to rest.
   void take(const Result& result);
 
@@ -49,7 +57,17 @@ class Sequence {
     double shear_m = 0;  ///< of the top edge beyond that
     std::vector<statics::Contact> contact;
     std::vector<double> u_x_m;  ///< [interface nodes] relative to a base, beyond that
+    std::vector<double> psi;    ///< [interface nodes] of a law with a state
   };
+
+  void begin_slow_slip();
+  /// Loads by equilibria to the next event. @return whether it begins before sequence.end_s
+  bool stick_to_next();
+  bool slip_to_next(const SlowRows& slow_rows);
+  /// @param u_x_per_shear  see statics::Statics::slid_to
+  statics::Equilibrium slid_to(const motion::SlowSlip& state, std::vector<double> u_x_per_shear) const;
+  /// The row of slow slip after another one from which it has begun.
+  record::LoadingRow slow_row(record::LoadingPhase phase, const record::LoadingRow& from) const;
 
   /// Finds the equilibrium of held_.
   void rest();
@@ -71,8 +89,10 @@ class Sequence {
   solid::Operator plate_;
   std::optional<solid::Operator> base_;
   std::optional<FrontPredictor> predictor_;  ///< of laws with a fracture energy
-  statics::Equilibrium at_rest_;             ///< before the next event
-  Held held_;                                ///< empty before the first event
+  motion::Monitor monitor_;
+  std::unique_ptr<motion::QuasiDynamicSlip> slow_;  ///< of a law with a state
+  statics::Equilibrium at_rest_;                    ///< before the next event
+  Held held_;                                       ///< of a law without a state empty before the first event
   std::vector<record::LoadingRow> loading_;
   std::vector<record::SequenceEvent> events_;
 };

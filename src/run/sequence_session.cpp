@@ -2,6 +2,7 @@
 #include "run/sequence_session.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "base/error.hpp"
 #include "files/checksum.hpp"
 #include "files/files.hpp"
+#include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 #include "run/sequence.hpp"
 
@@ -19,6 +21,12 @@ namespace {
 /// The kind of work that an event's folder holds; it is gone on with as part of its sequence.
 constexpr const char* event_work = "event of a sequence";
 constexpr const char* events_folder = "events";
+/// Histories of slow slip, each before the event of its number.
+constexpr const char* slow_folder = "slow";
+
+std::string folder_name(std::size_t k) {
+  return fmt::format("{:04}", k);
+}
 
 /// A sequence on rank 0; its events are runs on all ranks.
 class SequenceSession {
@@ -47,7 +55,7 @@ class SequenceSession {
   void write(const std::string& end, const Status& status);
   void fail(const char* status, const std::string& reason) noexcept;
   std::filesystem::path event_dir(std::size_t k) const {
-    return folder_.unfinished() / events_folder / fmt::format("{:04}", k);
+    return folder_.unfinished() / events_folder / folder_name(k);
   }
 
   results::ResultFolder& folder_;
@@ -122,7 +130,16 @@ void SequenceSession::require_events_unchanged() const {
 }
 
 bool SequenceSession::run_event() {
-  const auto* initial = sequence_->next();
+  std::optional<results::ResultStream> slow;
+  const auto* initial = sequence_->next([&](const record::History& row) {
+    if (!slow) {
+      const auto dir = folder_.unfinished() / slow_folder / folder_name(sequence_->events().size() + 1);
+      files::make_folders(dir);
+      slow.emplace(dir, results::RunFiles{history_table(config_, row.x_m), {}});
+    }
+    slow->sample(row);
+  });
+  if (slow) slow->finish();
   if (initial == nullptr) return false;
   const auto part = fmt::format("event {}", sequence_->events().size() + 1);
   auto hooks = hooks_;

@@ -290,14 +290,18 @@ static results::Origin origin_of(const input::Case& config) {
   return {config.title, resolved_text(config)};
 }
 
-results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s) {
-  const auto origin = origin_of(config);
-  const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
+results::Table history_table(const input::Case& config, const std::vector<double>& x_m) {
   std::vector<results::Description> law_states;
   for (const auto& state : config.friction.states())
     law_states.push_back({state.name, state.unit, state.description});
+  return results::history_table(x_m, origin_of(config), law_states);
+}
+
+results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s) {
+  const auto origin = origin_of(config);
+  const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
   results::RunFiles files{
-      results::history_table(initial.common.tractions.x_m, origin, law_states),
+      history_table(config, initial.common.tractions.x_m),
       {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
   if (initial.base) {
     const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));

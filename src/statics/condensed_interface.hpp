@@ -6,6 +6,7 @@
 
 #include "statics/factorisation.hpp"
 #include "statics/load_case.hpp"
+#include "statics/sliding_interface.hpp"
 
 namespace slipfront::statics {
 
@@ -26,6 +27,14 @@ class CondensedInterface {
   Factorisation::Load load(const TopDisplacement& top) const { return plate_->load(top); }
   /// g, N.
   Eigen::VectorXd relative_load(const Factorisation::Load& load) const;
+  /// Of nodes in contact and open ones.
+  /// @param load, unit_shear  of the loaded edge, and of its moving on by 1 m
+  /// @param gap_m, tributary_m  [interface nodes]
+  std::unique_ptr<SlidingInterface> sliding(const Factorisation::Load& load,
+                                            const Factorisation::Load& unit_shear,
+                                            const std::vector<double>& gap_m,
+                                            const std::vector<double>& tributary_m,
+                                            const std::vector<Contact>& contact) const;
   /// Displacement of all nodes under the load for given relative displacements of the interface.
   Displacement displacement(const Factorisation::Load& load, const Eigen::VectorXd& relative_u_m) const;
 

@@ -10,6 +10,7 @@
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
 #include "statics/load_case.hpp"
+#include "statics/sliding_interface.hpp"
 
 namespace slipfront::statics {
 
@@ -36,6 +37,8 @@ class CondensedLoadCase : public LoadCase {
       const auto x = static_cast<Eigen::Index>(2 * k);
       const auto contact = support.contact[k];
       if (contact == Contact::stick) u0(x) = support.anchor_x_m[k];
+      if (contact == Contact::stick && !support.anchor_x_per_shear.empty())
+        u1(x) = support.anchor_x_per_shear[k];
       if (contact != Contact::stick) unknown.push_back(x);
       if (contact != Contact::open) u0(x + 1) = -gap_m_[k];
       if (contact == Contact::open) unknown.push_back(x + 1);
@@ -57,7 +60,7 @@ class CondensedLoadCase : public LoadCase {
         }
         for (Eigen::Index c = 0; c < size; ++c) A(r, c) = row(unknown[c]);
         rhs(r, 0) = g0 - row.dot(u0);
-        rhs(r, 1) = g1;
+        rhs(r, 1) = g1 - row.dot(u1);
       }
       const Eigen::MatrixXd solution = A.partialPivLu().solve(rhs);
       for (Eigen::Index r = 0; r < size; ++r) {
@@ -106,6 +109,12 @@ class DirectSolver : public PlateSolver {
     return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top,
                                                unit_motion(mesh_, constraint, motion));
   }
+  std::unique_ptr<SlidingInterface> sliding(const TopDisplacement& top,
+                                            const std::vector<Contact>& contact) const override {
+    const auto unit = unit_motion(mesh_, constraint_under_shear(mesh_), EdgeMotion::along_x);
+    return held_->sliding(held_->load(top), held_->load(unit), gap_m_, mesh::tributary_lengths_m(mesh_),
+                          contact);
+  }
   std::int64_t n_unknowns() const override {
     return held_plate_->n_unknowns() + (base_ ? base_->n_unknowns() : 0);
   }
@@ -141,6 +150,12 @@ Shape shape_of(const mesh::Mesh& mesh) {
 }
 
 }  // namespace
+
+std::unique_ptr<SlidingInterface> PlateSolver::sliding(const TopDisplacement&,
+                                                       const std::vector<Contact>&) const {
+  SLIPFRONT_ASSERT(false, "only a factorisation condenses the interface");
+  return nullptr;
+}
 
 void TopDisplacement::add(double share, const TopDisplacement& more) {
   for (const auto of : {&TopDisplacement::u_x_m, &TopDisplacement::u_y_m, &TopDisplacement::pushed_u_x_m})

@@ -47,13 +47,15 @@ struct Support {
   std::vector<double> slip_sign;   ///< of t where the node slips
   std::vector<double> anchor_x_m;  ///< u_x where the node sticks, or began to slip
   std::vector<double> mu_s;
+  std::vector<double> anchor_x_per_shear = {};  ///< how it moves on where the node sticks; empty: it stays
   bool operator==(const Support&) const = default;
 };
 
 /// How far the interface of the undeformed bodies is open. [interface nodes]
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 
-class LoadCase;  // load_case.hpp
+class LoadCase;          // load_case.hpp
+class SlidingInterface;  // sliding_interface.hpp
 
 /// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one.
 struct DisplacementOfBodies {
@@ -81,6 +83,10 @@ class PlateSolver {
   virtual bool iterates() const { return false; }
   /// Multigrid cycles on the finest level so far; 0 where there are none.
   virtual int n_cycles() const { return 0; }
+  /// Of a plate held as under shear.
+  /// @pre it solves directly
+  virtual std::unique_ptr<SlidingInterface> sliding(const TopDisplacement& top,
+                                                    const std::vector<Contact>& contact) const;
 };
 
 /// Up to here a factorisation is chosen by StaticSolver::automatic: elements of 0.333 mm on the paper's plate

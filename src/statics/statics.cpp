@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
@@ -70,9 +71,10 @@ InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const mesh::Mesh* base,
 }
 
 ContactStates at_places(const ContactStates& all, const std::vector<std::size_t>& places) {
-  const auto& [contact, slip_sign, anchor_x_m, mu_s] = all.support;
-  return {{at_places(contact, places), at_places(slip_sign, places), at_places(anchor_x_m, places),
-           at_places(mu_s, places)},
+  const auto& s = all.support;
+  SLIPFRONT_ASSERT(s.anchor_x_per_shear.empty(), "nodes that move on are solved for directly");
+  return {{at_places(s.contact, places), at_places(s.slip_sign, places), at_places(s.anchor_x_m, places),
+           at_places(s.mu_s, places)},
           at_places(all.has_touched, places)};
 }
 
@@ -464,6 +466,17 @@ void Statics::press_down(double compliance_m_per_Pa) {
 
 Statics::~Statics() = default;
 
+template <class Problem>
+Equilibrium Statics::equilibrium(const Problem& problem, double shear_m) const {
+  Equilibrium e = make_equilibrium(problem, shear_m, loading_.edge_margin_m);
+  auto u = sheared_->displacement(shear_m), per_shear = sheared_->displacement_per_shear();
+  e.u_m = std::move(u.above);
+  e.below_u_m = std::move(u.below);
+  e.u_per_shear = std::move(per_shear.above);
+  e.below_u_per_shear = std::move(per_shear.below);
+  return e;
+}
+
 template <class FindShear>
 Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
   Inside inside{};
@@ -510,13 +523,7 @@ Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
   }
   if (solver_->iterates()) last_ = problem->states;
 
-  Equilibrium e = make_equilibrium(*problem, shear, loading_.edge_margin_m);
-  auto u = sheared_->displacement(shear), per_shear = sheared_->displacement_per_shear();
-  e.u_m = std::move(u.above);
-  e.below_u_m = std::move(u.below);
-  e.u_per_shear = std::move(per_shear.above);
-  e.below_u_per_shear = std::move(per_shear.below);
-  return e;
+  return equilibrium(*problem, shear);
 }
 
 void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
@@ -527,6 +534,23 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
   const auto tilted_u = displacement_of(tilted_);
   sheared_ =
       solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
+}
+
+Equilibrium Statics::slid_to(std::vector<Contact> contact, std::vector<double> u_x_m,
+                             std::vector<double> u_x_per_shear, double shear_m) const {
+  for (std::size_t k = 0; k < u_x_per_shear.size(); ++k) u_x_m[k] -= shear_m * u_x_per_shear[k];
+  ContactStates states{{std::move(contact), std::vector<double>(u_x_m.size()), std::move(u_x_m), mu_s_,
+                        std::move(u_x_per_shear)},
+                       std::vector<std::uint8_t>(held_contact_.size(), 1)};
+  std::vector<std::size_t> all(states.has_touched.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  ContactProblem problem(interface_nodes(mesh_, base_mesh_, all), *sheared_, std::move(states));
+  problem.solve(final_accuracy);
+  return equilibrium(problem, shear_m);
+}
+
+std::unique_ptr<SlidingInterface> Statics::sliding(const std::vector<Contact>& contact) const {
+  return solver_->sliding(tilted_top_, contact);
 }
 
 Equilibrium Statics::shear_by(double shear_m) const {

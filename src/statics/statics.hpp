@@ -15,6 +15,7 @@
 #include "solid/operator.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/settings.hpp"
+#include "statics/sliding_interface.hpp"
 
 namespace slipfront::statics {
 
@@ -111,6 +112,16 @@ class Statics {
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
 
+  /// Equilibrium with the nodes that stick anywhere along x, whatever friction bears. Others slip without it.
+  /// @param u_x_m  displacements along x relative to those of a base [interface nodes]
+  /// @param u_x_per_shear  how they move on with the shear
+  /// @pre the statics are solved by a factorisation
+  Equilibrium slid_to(std::vector<Contact> contact, std::vector<double> u_x_m,
+                      std::vector<double> u_x_per_shear, double shear_m) const;
+  /// Tractions of such equilibria.
+  /// @pre as above
+  std::unique_ptr<SlidingInterface> sliding(const std::vector<Contact>& contact) const;
+
   /// Equilibrium at the shear at which the shear tractions add up to a force, per unit thickness.
   /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
   Equilibrium shear_to_force(double force_N_per_m) const;
@@ -124,6 +135,8 @@ class Statics {
   /// Tilts the plate.
   /// @param compliance_m_per_Pa  about: displacement of the loaded edge over the mean pressure
   void press_down(double compliance_m_per_Pa);
+  template <class Problem>
+  Equilibrium equilibrium(const Problem& problem, double shear_m) const;
   /// @param sticks_inside  slip there is none, but of a guess
   template <class FindShear>
   Equilibrium shear(FindShear&& find_shear, bool sticks_inside) const;

@@ -100,6 +100,17 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
       const V y = coefficient * per_a;
       return coefficient + a * (logarithm(decay(2 * y).lost) - log_V);
     }
+    /// d psi/dt while the surfaces slide at V >= 0.
+    V state_rate_per_s(V psi, V speed_m_per_s) const {
+      const V decay_per_s = speed_m_per_s * per_d_c_per_m;
+      if constexpr (evolution != StateEvolution::aging) {
+        constexpr double at_rest = 1e-150;
+        const V speed = select(speed_m_per_s < at_rest, V{} + at_rest, speed_m_per_s);
+        return decay_per_s * (steady_state(speed) - psi);
+      }
+      const V growth_per_s = V0_m_per_s * per_d_c_per_m * exp_minus((psi - f0) * per_b);
+      return b * (growth_per_s - decay_per_s);
+    }
     /// psi after a time in which the surfaces slide at |V|: exact.
     V evolved(V psi, V speed_m_per_s, double dt_s) const {
       const auto [left, lost] = decay(speed_m_per_s * dt_s * per_d_c_per_m);

@@ -15,14 +15,14 @@ class HistoryRows final : public Observer {
   void take_row(const record::History& row) override {
     output_.sample(row);
     last_ = row;
-    last_.law_states.clear();
   }
-  /// The last one, without places and states of the friction law; empty before the first.
+  /// The last one, without places; empty before the first.
   const record::History& last() const { return last_; }
 
   const char* name() const override { return "history"; }
   void archive(StateArchive& archive) override {
-    for (auto* values : record::members_of(last_)) archive(*values);
+    for (auto* values : record::members_of(last_, record::history_fields)) archive(*values);
+    archive(last_.law_states);
   }
   void restored(Pause& /*pause*/) override {
     const std::size_t n_rows = last_.time_s.size();

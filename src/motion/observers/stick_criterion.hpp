@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "motion/observer.hpp"
 #include "statics/statics.hpp"
 
@@ -14,15 +15,18 @@ struct Stretch {
   double from_m = 0, to_m = 0;
 };
 
-/// Criterion of the end of an event that static equilibria follow: all nodes of a stretch have stuck for some
-/// time, whatever waves are left. Beside it, at the edges of contact, equilibria slip as well.
+/// Criterion of the end of an event that equilibria follow: all nodes of a stretch have stuck for some time,
+/// whatever waves are left, and none slips faster than equilibria may. Beside the stretch, at the edges of
+/// contact, equilibria slip as well.
 class StickCriterion final : public Observer {
  public:
   /// @param state  in which the event begins, all nodes sticking
-  StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s);
+  /// @param slow_m_per_s  slip rate up to which equilibria may slip
+  StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s,
+                 double slow_m_per_s = infinity);
 
   void at_update(const SlipUpdate& seen) override;
-  bool after_step(const Now& now, const SlipRates& /*rates*/) override { return !is_at_rest(now); }
+  bool after_step(const Now& now, const SlipRates& rates) override;
   std::int64_t guaranteed_steps(const Now& now) const override;
   std::optional<End> end(Pause& pause) override;
 
@@ -36,7 +40,8 @@ class StickCriterion final : public Observer {
   std::vector<std::uint8_t> is_within_;
   std::vector<std::uint8_t> is_slipping_;  ///< [nodes] of those within
   std::int64_t n_slipping_ = 0;            ///< the number of these
-  double quiet_s_, since_s_ = 0;           ///< since then none slips
+  double quiet_s_, slow_m_per_s_;
+  double since_s_ = 0;  ///< since then none slips
 };
 
 }  // namespace slipfront::motion

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/quasi_dynamic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Error of psi over a, and of slip over d_c, in a step.
+constexpr double accuracy = 1e-5;
+/// Of the mean pressure. Nodes that bear less, next to an edge where contact opens, have friction too small
+/// and too steep to be followed, and slip without it.
+constexpr double light_share = 0.01;
+
+}  // namespace
+
+double SlowSlip::fastest_m_per_s() const {
+  double fastest = 0;
+  for (const double V : slip_rate_m_per_s) fastest = std::max(fastest, std::abs(V));
+  return fastest;
+}
+
+QuasiDynamicSlip::QuasiDynamicSlip(const statics::Statics& statics, interface::QuasiDynamicFriction friction,
+                                   std::vector<double> tributary_m, double edge_speed_m_per_s)
+    : statics_(statics),
+      friction_(std::move(friction)),
+      tributary_m_(std::move(tributary_m)),
+      edge_speed_m_per_s_(edge_speed_m_per_s) {
+  const auto resize = [&](Rates& rates) {
+    rates.u_x.resize(tributary_m_.size());
+    rates.psi.resize(tributary_m_.size());
+  };
+  resize(rates_);
+  for (auto& rates : stages_) resize(rates);
+}
+
+void QuasiDynamicSlip::balance(SlowSlip& state, Rates& rates) const {
+  bodies_->equilibrate(state.shear_m, state.u_x_m, state.t_Pa, state.p_Pa, state.gap_m);
+  friction_.balance(state.t_Pa, state.p_Pa, state.psi, state.slip_rate_m_per_s, rates.psi);
+  rates.u_x = state.slip_rate_m_per_s;
+}
+
+void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics::Contact> contact,
+                             std::vector<double> u_x_m, std::vector<double> psi) {
+  const std::vector<double> none(tributary_m_.size());
+  now_ = {time_s, shear_m, std::move(u_x_m), std::move(psi), none, none, none, none, std::move(contact)};
+  for (auto& state : now_.contact)
+    if (state == statics::Contact::slip) state = statics::Contact::stick;
+  bodies_ = statics_.sliding(now_.contact);
+  works_ = {};
+  next_dt_s_ = 0;
+  balance(now_, rates_);
+  double force_N_per_m = 0, length_m = 0;
+  for (std::size_t i = 0; i < tributary_m_.size(); ++i) {
+    force_N_per_m += now_.p_Pa[i] * tributary_m_[i];
+    length_m += tributary_m_[i];
+  }
+  light_Pa_ = light_share * force_N_per_m / length_m;
+  settle_contact();
+}
+
+bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
+                                  const std::function<bool()>& after_step) {
+  constexpr double beyond = 1.1, slowest_m_per_s = 1e-30;
+  if (next_dt_s_ == 0)
+    next_dt_s_ =
+        accuracy * std::ranges::min(friction_.d_c_m()) / std::max(now_.fastest_m_per_s(), slowest_m_per_s);
+  while (now_.time_s < end_s) {
+    if (now_.fastest_m_per_s() >= slip_rate_m_per_s) return true;
+    const double rest_s = end_s - now_.time_s;
+    const bool is_last = next_dt_s_ >= rest_s;
+    const double taken_s = try_step(std::min(next_dt_s_, rest_s));
+    if (taken_s == 0) continue;
+    if (next_.fastest_m_per_s() > beyond * slip_rate_m_per_s) {
+      next_dt_s_ = 0.5 * taken_s;
+      continue;
+    }
+    if (is_last) next_.time_s = end_s;
+    add_works(now_, next_);
+    std::swap(now_, next_);
+    std::swap(rates_, stages_.back());
+    ++n_steps_;
+    settle_contact();
+    if (!after_step()) return false;
+  }
+  return false;
+}
+
+void QuasiDynamicSlip::settle_contact() {
+  constexpr int most = 100;
+  for (int i = 0; i < most; ++i) {
+    if (!correct_contact()) return;
+    const auto before = now_;
+    bodies_ = statics_.sliding(now_.contact);
+    balance(now_, rates_);
+    add_works(before, now_);
+  }
+  throw UserError("{:.6g} s after the tilt contact at the interface does not settle; press the bodies harder",
+                  now_.time_s);
+}
+
+bool QuasiDynamicSlip::correct_contact() {
+  using statics::Contact;
+  // Tension over the largest pressure, and overlap over the slip in which psi changes, that count.
+  constexpr double tension = 1e-9, overlap = 1e-6;
+  const double least_p_Pa = -tension * std::ranges::max(now_.p_Pa);
+  bool changed = false;
+  for (std::size_t i = 0; i < now_.contact.size(); ++i) {
+    const double p_Pa = now_.p_Pa[i];
+    auto& contact = now_.contact[i];
+    const auto before = contact;
+    if (contact == Contact::open)
+      contact = now_.gap_m[i] < -overlap * friction_.d_c_m()[i] ? Contact::slip : Contact::open;
+    else if (p_Pa < least_p_Pa)
+      contact = Contact::open;
+    else if (p_Pa < (contact == Contact::slip ? 2 : 1) * light_Pa_)
+      contact = Contact::slip;
+    else
+      contact = Contact::stick;
+    changed = changed || contact != before;
+  }
+  return changed;
+}
+
+double QuasiDynamicSlip::try_step(double dt_s) {
+  const std::size_t n = tributary_m_.size();
+  // The stages' rates: now, at a half, at three quarters, and at the end, where the next step begins.
+  auto& [k2, k3, k4] = stages_;
+  const auto& k1 = rates_;
+  next_ = now_;
+  const auto go = [&](double share, const auto& sum, Rates& rates) {
+    next_.time_s = now_.time_s + share * dt_s;
+    next_.shear_m = now_.shear_m + edge_speed_m_per_s_ * share * dt_s;
+    for (std::size_t i = 0; i < n; ++i) {
+      next_.u_x_m[i] = now_.u_x_m[i] + dt_s * sum(&Rates::u_x, i);
+      next_.psi[i] = now_.psi[i] + dt_s * sum(&Rates::psi, i);
+    }
+    balance(next_, rates);
+  };
+  using Part = std::vector<double> Rates::*;
+  go(
+      0.5, [&](Part p, std::size_t i) { return 0.5 * (k1.*p)[i]; }, k2);
+  go(
+      0.75, [&](Part p, std::size_t i) { return 0.75 * (k2.*p)[i]; }, k3);
+  go(
+      1, [&](Part p, std::size_t i) { return (2 * (k1.*p)[i] + 3 * (k2.*p)[i] + 4 * (k3.*p)[i]) / 9; }, k4);
+  double error = 0;
+  const auto of_pair = [&](Part p, std::size_t i) {
+    return dt_s * std::abs(-5 * (k1.*p)[i] / 72 + (k2.*p)[i] / 12 + (k3.*p)[i] / 9 - (k4.*p)[i] / 8);
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (now_.contact[i] != statics::Contact::stick) continue;
+    error = std::max(
+        {error, of_pair(&Rates::psi, i) / friction_.a()[i], of_pair(&Rates::u_x, i) / friction_.d_c_m()[i]});
+  }
+  if (!std::isfinite(error)) {
+    next_dt_s_ = 0.1 * dt_s;
+    return 0;
+  }
+  error /= accuracy;
+  constexpr double safety = 0.9, least = 0.2, most = 5;
+  const double factor = error > 0 ? std::clamp(safety * std::pow(error, -1.0 / 3), least, most) : most;
+  next_dt_s_ = factor * dt_s;
+  return error > 1 ? 0 : dt_s;
+}
+
+void QuasiDynamicSlip::add_works(const SlowSlip& from, const SlowSlip& to) {
+  double force_N_per_m = 0;
+  for (std::size_t i = 0; i < tributary_m_.size(); ++i) {
+    const double half_m = 0.5 * tributary_m_[i], eta = friction_.radiation_damping_Pa_s_per_m();
+    const double t = half_m * (from.t_Pa[i] + to.t_Pa[i]);
+    const double slip_m = to.u_x_m[i] - from.u_x_m[i];
+    const double radiated = half_m * eta * (from.slip_rate_m_per_s[i] + to.slip_rate_m_per_s[i]) * slip_m;
+    force_N_per_m += t;
+    works_.of_friction_J_per_m -= t * slip_m - radiated;
+    works_.radiated_J_per_m += radiated;
+    works_.of_contact_J_per_m += half_m * (from.p_Pa[i] + to.p_Pa[i]) * (to.gap_m[i] - from.gap_m[i]);
+  }
+  works_.of_load_J_per_m += force_N_per_m * (to.shear_m - from.shear_m);
+}
+
+}  // namespace slipfront::motion
