@@ -86,14 +86,17 @@ def problem(folder: Path, name: str, expected: str) -> str | None:
     return None
 
 
-def result_file(path: Path) -> Path:
-    """A result's file where it is now; refused where it is not as the folder's list says."""
-    sums = read_list(path.parent)
+def result_file(path: Path, folder: Path | None = None) -> Path:
+    """A result's file where it is now; refused where it is not as the list of the set's folder says, by
+    default its own."""
+    folder = path.parent if folder is None else folder
+    name = path.relative_to(folder).as_posix()
+    sums = read_list(folder)
     if sums is None:
         return located(path)
-    if path.name not in sums:
+    if name not in sums:
         raise DataError(f"{path}: not in {LIST}: not of this set of results")
-    wrong = problem(path.parent, path.name, sums[path.name])
+    wrong = problem(folder, name, sums[name])
     if wrong is not None:
         raise DataError(wrong)
     return located(path)

@@ -120,6 +120,31 @@ def read_case(folder: Path) -> dict[str, Any]:
     return case
 
 
+def stored_history(file: Path, kept: Any, attrs: dict[str, str]) -> xr.Dataset:
+    """A finished interface.h5, whose fields stay there until they are asked for."""
+    with open_hdf5(file) as hdf5:
+        coordinates = {
+            name: xr.Variable((name,), dataset(hdf5, name, 1)[()], attributes_of(hdf5[name], name))
+            for name in ("time_s", "x_m")
+        }
+        for name, values in coordinates.items():
+            require_ascending(file, name, values.to_numpy())
+        shape = len(coordinates["time_s"]), len(coordinates["x_m"])
+
+        def field(name: str) -> xr.Variable:
+            found = dataset(hdf5, name, 2)
+            array = StoredArray(file, found.shape, found.dtype, lambda h, key: h[name][key], kept)
+            return stored(("time_s", "x_m"), array, attributes_of(found, name))
+
+        fields = {
+            name: field(name)
+            for name, found in hdf5.items()
+            if isinstance(found, h5py.Dataset) and found.shape == shape
+        }
+    require(all(name in fields for name in HISTORY_FIELDS), file, f"not all of its fields are {shape}")
+    return xr.Dataset(fields, coordinates, attrs)
+
+
 class OpenRun:
     """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
     what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
@@ -174,21 +199,7 @@ class OpenRun:
         file = result_file(self.folder / "interface.h5")
         if is_open(file):
             return self._open_history(file)
-        with open_hdf5(file) as hdf5:
-            coordinates = {
-                name: xr.Variable((name,), dataset(hdf5, name, 1)[()], attributes_of(hdf5[name], name))
-                for name in ("time_s", "x_m")
-            }
-            for name, values in coordinates.items():
-                require_ascending(file, name, values.to_numpy())
-            shape = len(coordinates["time_s"]), len(coordinates["x_m"])
-            fields = {
-                name: self._stored_field(file, hdf5, name)
-                for name, found in hdf5.items()
-                if isinstance(found, h5py.Dataset) and found.shape == shape
-            }
-        require(all(name in fields for name in HISTORY_FIELDS), file, f"not all of its fields are {shape}")
-        return xr.Dataset(fields, coordinates, self._attributes())
+        return stored_history(file, self._kept, self._attributes())
 
     @property
     def interface(self) -> xr.Dataset:
@@ -318,11 +329,6 @@ class OpenRun:
         variables = table_variables(table, dim, finite)
         require(dim in variables, file, f"no column '{dim}'")
         return xr.Dataset(variables, attrs=self._attributes())
-
-    def _stored_field(self, file: Path, hdf5: h5py.File, name: str) -> xr.Variable:
-        found = dataset(hdf5, name, 2)
-        array = StoredArray(file, found.shape, found.dtype, lambda h, key: h[name][key], self._kept)
-        return stored(("time_s", "x_m"), array, attributes_of(found, name))
 
     def _of_motion(self, found: h5py.Dataset, name: str) -> dict[str, str]:
         """Attributes of what counts from the state before the event, where that is not the unloaded one."""

@@ -13,10 +13,10 @@ from typing import Any, overload
 import numpy as np
 import xarray as xr
 
-from slipfront.files import DataError, Table, read_table
+from slipfront.files import DataError, Table, exists, read_table
 from slipfront.folder import LIST, SEQUENCE, problem, read_list, result_file
 from slipfront.given import path
-from slipfront.opened import Kept, OpenRun, read_case, table_variables
+from slipfront.opened import Kept, OpenRun, read_case, stored_history, table_variables
 from slipfront.read import Place, is_sequence, read_place, require
 from slipfront.units import attributes
 
@@ -55,7 +55,8 @@ LOADING_NAMES = {
     "shear_force_N_per_m": "sum of the tangential traction",
     "shear_over_normal": "shear over normal force",
     "normal_force_x_m": "where along the interface the normal force acts",
-    "wave_loss_J_per_m": "energy of the waves that were left at the ends of the events so far",
+    "fastest_slip_rate_m_per_s": "slip rate of the fastest node, of a law with a state",
+    "wave_loss_J_per_m": "energy of the waves left at the ends of the events so far and radiated by slow slip",
 }
 
 
@@ -106,6 +107,30 @@ class Runs(Sequence[OpenRun]):
             if wrong is not None:
                 raise DataError(wrong)
         return OpenRun(read_place(folder / name), self._kept)
+
+
+class SlowSlip(Sequence[xr.Dataset]):
+    """Histories of slow slip, each opened when it is asked for."""
+
+    def __init__(self, folder: Path, n_most: int, kept: Kept | None, attrs: dict[str, str]) -> None:
+        self._folder, self._kept, self._attrs = folder, kept, attrs
+        self._files = [
+            file for k in range(1, n_most + 1) if exists(file := folder / f"slow/{k:04}/interface.h5")
+        ]
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+    @overload
+    def __getitem__(self, index: int) -> xr.Dataset: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[xr.Dataset]: ...
+    def __getitem__(self, index: int | slice) -> xr.Dataset | list[xr.Dataset]:
+        files = self._files[index]
+        return self._open(files) if isinstance(files, Path) else [self._open(file) for file in files]
+
+    def _open(self, file: Path) -> xr.Dataset:
+        return stored_history(result_file(file, self._folder), self._kept, self._attrs)
 
 
 class OpenSequence:
@@ -159,8 +184,8 @@ class OpenSequence:
     @cached_property
     def loading(self) -> xr.Dataset:
         """loading.csv over `row`: forces and energies of the tilted sample, and where each event begins, ends
-        to slip and is at rest. `phase`: tilted, event_begins, slip_ends, at_rest, loaded; `event`: the number
-        of those that have begun."""
+        to slip and is at rest. `phase`: tilted, event_begins, slip_ends, at_rest, loaded, creeps; `event`: the
+        number of those that have begun."""
         table = self._table("loading.csv")
         variables = table_variables(table, "row")
         variables["event"] = xr.Variable(("row",), numbers_of_events(table))
@@ -171,6 +196,14 @@ class OpenSequence:
     def runs(self) -> Sequence[OpenRun]:
         """The runs of `events`, in order; runs[0] is that of event 1. An event under way is none of them."""
         return Runs(self._place, self.events.sizes["event"], self._kept)
+
+    @property
+    def slow(self) -> Sequence[xr.Dataset]:
+        """Under a law with a state the slow slip before each event, as OpenRun.history, with time and slip since
+        the tilt; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the last event
+        too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
+        n_most = self.events.sizes["event"] + (1 if self.status == "complete" else 0)
+        return SlowSlip(self.folder, n_most, self._kept, self._attributes())
 
     @cached_property
     def slip(self) -> xr.DataArray:

@@ -113,6 +113,8 @@ struct Sequence {
   int max_events = 1;
   double end_s = infinity;  ///< of the loading, from the tilt on
   bool to_global_sliding = false;
+  /// Of laws that stick: mu_s grows by the first for each e-fold of 1 + (time at rest)/(the second).
+  double healing_per_e_fold = 0, healing_time_s = 1;
   /// Under a law with a state; without it that of inertia_slip_rate_m_per_s.
   std::optional<double> inertia_slip_rate_m_per_s;
 };
@@ -149,6 +151,11 @@ inline bool is_prestressed(const Case& config) {
 /// Whether the case is a sequence of events.
 inline bool is_sequence(const Case& config) {
   return config.sequence.max_events > 1;
+}
+
+/// Whether mu_s of nodes at rest grows between its events.
+inline bool heals(const Case& config) {
+  return is_sequence(config) && config.sequence.healing_per_e_fold > 0;
 }
 
 /// Whether these grow during the event.

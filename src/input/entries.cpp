@@ -310,6 +310,10 @@ Condition in_slow_sequence() {
   return {Message("{} > 1 and a {} with a state", Key("sequence.max_events"), Key("friction.law")),
           [](const Case& c) { return is_sequence(c) && c.friction.has_state(); }};
 }
+Condition in_sticking_sequence() {
+  return {Message("{} > 1 and a {} with mu_s", Key("sequence.max_events"), Key("friction.law")),
+          [](const Case& c) { return is_sequence(c) && has_static_coefficient(c.friction); }};
+}
 Condition rounded_by(Corner corner, const char* word) {
   return {Message("{} = {}", Key("plate.corner"), word),
           [corner](const Case& c) { return c.plate.corner == corner; }};
@@ -650,6 +654,11 @@ void add_sequence(Entries& all) {
       "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
+  sequence.only_with = in_sticking_sequence();
+  sequence.add("healing_per_e_fold", &Sequence::healing_per_e_fold, at_least(0),
+               "B of mu_s + B ln(1 + t/t_0), the coefficient of a node that has rested for t; 0: it has "
+               "healed at once");
+  sequence.add("healing_time_s", &Sequence::healing_time_s, above(0), "t_0 of it");
   sequence.only_with = in_slow_sequence();
   sequence.optional("inertia_slip_rate_m_per_s", &Sequence::inertia_slip_rate_m_per_s, above(0), 1e-3,
                     "slip rate of the fastest node at which an event begins; it ends when for time.quiet_s "

@@ -25,6 +25,7 @@ namespace {
 using interface::FrictionLaw;
 
 constexpr const char* x_column = "x_m";
+constexpr const char* friction_table_name = "friction.csv";
 
 Message in_friction_file(const std::filesystem::path& file) {
   return Message("{}: {}", Key("friction.file"), files::one_line(file.native()));
@@ -203,6 +204,29 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
     if (config.prestress.t_Pa) settle_slip_rate(law, *config.prestress.t_Pa, config.prestress.p_Pa);
   require_allowed(config, x_m, laws);
   return laws;
+}
+
+Case with_friction_at(Case config, const std::vector<double>& x_m, const std::vector<FrictionLaw>& laws) {
+  FrictionTable table{x_column, x_m, {}, {}};
+  for (const auto& key : keys_of(config.friction)) {
+    std::vector<double> values;
+    for (const auto& law : laws) values.push_back(law.parameter(key));
+    const double of_case = config.friction.parameter(key);
+    if (std::ranges::all_of(values, [&](double value) { return value == of_case; })) continue;
+    table.text += "," + key;
+    table.keys.push_back(key);
+    table.values.push_back(std::move(values));
+  }
+  if (table.keys.empty()) return config;
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    table.text += fmt::format("\n{}", x_m[i]);
+    for (const auto& values : table.values) table.text += fmt::format(",{}", values[i]);
+  }
+  table.text += "\n";
+  config.friction_along_x = {};
+  config.friction_along_x.file = friction_table_name;
+  config.friction_along_x.table = std::move(table);
+  return config;
 }
 
 double tip_slip_rate_m_per_s(const Case& config) {

@@ -20,6 +20,10 @@ FrictionTable read_friction_table(const std::filesystem::path& file, const inter
 /// parameters are not allowed.
 std::vector<interface::FrictionLaw> friction_at(const Case& config, const std::vector<double>& x_m);
 
+/// The same case with these laws at the nodes of the interface, as a table.
+Case with_friction_at(Case config, const std::vector<double>& x_m,
+                      const std::vector<interface::FrictionLaw>& laws);
+
 /// Slip rate beyond which a node under a law that never sticks counts as slipping: the case's, or where the
 /// direct effect a p/V is as steep as the bodies' radiation damping, at least 10 V_i.
 /// @pre the law has a state

@@ -71,6 +71,10 @@ double static_coefficient(const FrictionLaw& law) {
   return visit(law, [](const auto& l) { return l.static_coefficient(); });
 }
 
+bool has_static_coefficient(const FrictionLaw& law) {
+  return description_of(law).parameters.front().key == std::string_view("mu_s");
+}
+
 double static_strength_Pa(const FrictionLaw& law, double p_Pa) {
   return static_coefficient(law) * p_Pa + law.cohesion_Pa();
 }

@@ -130,6 +130,8 @@ const std::vector<LawDescription>& law_descriptions();
 const LawDescription& description_of(const FrictionLaw& law);
 
 double static_coefficient(const FrictionLaw& law);
+/// Whether it is a parameter, mu_s.
+bool has_static_coefficient(const FrictionLaw& law);
 /// Traction that an interface at rest bears under a pressure p > 0, cohesion included.
 double static_strength_Pa(const FrictionLaw& law, double p_Pa);
 /// The coefficient that a weakening law falls to.

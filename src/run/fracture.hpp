@@ -58,6 +58,8 @@ class FrontPredictor {
   /// @throws UserError where the law has no fracture energy of its own and none is given
   FracturePrediction predict(const TipFriction& friction = {}, const std::optional<double>& x_m = {},
                              const record::StaticState* before = nullptr) const;
+  /// From here on with other friction along the interface.
+  void set_friction(const input::FrictionAlongX& friction) { config_.friction_along_x = friction; }
 
  private:
   input::Case given_, config_;

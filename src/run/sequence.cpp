@@ -69,6 +69,7 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
   if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
   describe_solver(config, statics_, initial_);
   at_rest_ = statics_.tilted();
+  if (input::heals(config)) held_.rests_since_s.assign(initial_.tributary_m.size(), 0);
   if (config.friction.has_state())
     begin_slow_slip();
   else if (has_fracture_energy(config))
@@ -132,7 +133,7 @@ void Sequence::begin_slow_slip() {
   const auto model = input::contact_model(config_, interface_x_m(initial_.mesh));
   interface::QuasiDynamicFriction friction(model, initial_.tributary_m.size(),
                                            stability::radiation_damping_Pa_s_per_m(bodies_of(config_)));
-  held_ = {0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states()};
+  held_ = {0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states(), {}};
   slow_ = std::make_unique<motion::QuasiDynamicSlip>(statics_, std::move(friction), initial_.tributary_m,
                                                      top_speed_m_per_s(config_));
 }
@@ -144,7 +145,42 @@ const InitialState* Sequence::next(const SlowRows& slow_rows) {
   return &initial_;
 }
 
+void Sequence::heal_until(double time_s) {
+  const auto x_m = interface_x_m(initial_.mesh);
+  auto laws = input::friction_at(config_, x_m);
+  laws.resize(x_m.size(), config_.friction);
+  const auto& sequence = config_.sequence;
+  initial_.mu_s.clear();
+  for (std::size_t k = 0; k < laws.size(); ++k) {
+    double& mu_s = laws[k].parameter("mu_s");
+    mu_s +=
+        sequence.healing_per_e_fold * std::log1p((time_s - held_.rests_since_s[k]) / sequence.healing_time_s);
+    initial_.mu_s.push_back(mu_s);
+  }
+  statics_.set_mu_s(initial_.mu_s);
+  event_config_ = input::with_friction_at(config_, x_m, laws);
+}
+
+void Sequence::heal_to_critical() {
+  // From below: what mu_s has grown to at a shear is reached at a later one, until they meet.
+  constexpr double accuracy = 1e-10;
+  constexpr int most = 1000;
+  const double end_m = config_.sequence.end_s * top_speed_m_per_s(config_) - held_.moved_m;
+  double shear_m = at_rest_.shear_m;
+  for (int i = 0; i < most && shear_m < end_m; ++i) {
+    heal_until(time_s(shear_m + held_.moved_m));
+    const double critical_m = statics_.shear_to(1).shear_m;
+    if (critical_m - shear_m <= accuracy * std::abs(critical_m + held_.moved_m)) return;
+    shear_m = critical_m;
+  }
+  if (shear_m < end_m)
+    throw UserError("{} heals the interface faster than the load grows; reduce it, or raise {}",
+                    Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_over_c_L"));
+  heal_until(config_.sequence.end_s);
+}
+
 bool Sequence::stick_to_next() {
+  if (input::heals(config_)) heal_to_critical();
   const double margin = config_.loading.critical_margin;
   const auto at_least = [&](statics::Equilibrium state) {
     return state.shear_m > at_rest_.shear_m ? std::move(state) : statics_.shear_by(at_rest_.shear_m);
@@ -263,6 +299,8 @@ void Sequence::take(const Result& result) {
   loading_.push_back(ends);
 
   if (slow_) held_.psi = row_at_end.law_states.front();
+  if (!held_.rests_since_s.empty())
+    for (const auto& onset : event.record.onsets) held_.rests_since_s[onset.node] = time_s(shear_m);
   rest();
   auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
   rests.energies.strain = strain_energy_J_per_m(at_rest_);
@@ -341,8 +379,9 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
   events_.push_back(e);
 }
 
-void Sequence::predict(record::SequenceEvent& event) const {
+void Sequence::predict(record::SequenceEvent& event) {
   if (!predictor_) return;
+  if (event_config_) predictor_->set_friction(event_config_->friction_along_x);
   const auto p = predictor_->predict({}, initial_.spontaneous.peak_x_m, &initial_.spontaneous.tractions);
   for (const auto& front : p.of_fronts.fronts) {
     // The last node of a front that arrests is the one that it does not break.
@@ -354,20 +393,23 @@ void Sequence::predict(record::SequenceEvent& event) const {
 }
 
 void Sequence::serialize(StateArchive& archive) {
-  archive(held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, held_.psi, loading_, events_);
+  archive(held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, held_.psi, held_.rests_since_s, loading_,
+          events_);
   if (!archive.is_loading()) return;
   const std::size_t n = initial_.tributary_m.size();
   const auto are_finite = [](const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
-  require_possible(
-      !events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n && are_finite(held_.u_x_m) &&
-          std::isfinite(held_.shear_m) && std::isfinite(held_.moved_m) &&
-          std::ranges::max(held_.contact) <= statics::Contact::open && held_.psi.size() == (slow_ ? n : 0) &&
-          are_finite(held_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
-          std::ranges::all_of(loading_,
-                              [](const LoadingRow& row) { return row.phase <= LoadingPhase::creeps; }),
-      "a sequence");
+  require_possible(!events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n &&
+                       are_finite(held_.u_x_m) && std::isfinite(held_.shear_m) &&
+                       std::isfinite(held_.moved_m) &&
+                       std::ranges::max(held_.contact) <= statics::Contact::open &&
+                       held_.rests_since_s.size() == (input::heals(config_) ? n : 0) &&
+                       are_finite(held_.rests_since_s) && held_.psi.size() == (slow_ ? n : 0) &&
+                       are_finite(held_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
+                       std::ranges::all_of(
+                           loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::creeps; }),
+                   "a sequence");
   rest();
 }
 

@@ -40,6 +40,8 @@ class Sequence {
   /// Under a law with a state: the first one in which a node slips at sequence.inertia_slip_rate_m_per_s.
   /// @param slow_rows  takes rows of slow slip, their time since the tilt
   const InitialState* next(const SlowRows& slow_rows = [](const record::History&) {});
+  /// The case of the event that begins so: where mu_s has grown, with it.
+  const input::Case& config_of_event() const { return event_config_ ? *event_config_ : config_; }
   /// Finds the equilibrium behind the event that has begun so, and has come to rest.
   void take(const Result& result);
 
@@ -56,13 +58,19 @@ class Sequence {
     double moved_m = 0;
     double shear_m = 0;  ///< of the top edge beyond that
     std::vector<statics::Contact> contact;
-    std::vector<double> u_x_m;  ///< [interface nodes] relative to a base, beyond that
-    std::vector<double> psi;    ///< [interface nodes] of a law with a state
+    std::vector<double> u_x_m;          ///< [interface nodes] relative to a base, beyond that
+    std::vector<double> psi;            ///< [interface nodes] of a law with a state
+    std::vector<double> rests_since_s;  ///< [interface nodes] where mu_s grows at rest
   };
 
   void begin_slow_slip();
   /// Loads by equilibria to the next event. @return whether it begins before sequence.end_s
   bool stick_to_next();
+  /// Gives nodes the mu_s that they have at a time.
+  void heal_until(double time_s);
+  /// The first shear since the tilt, at most that of sequence.end_s, at which t/p inside reaches mu_s, which
+  /// grows.
+  void heal_to_critical();
   bool slip_to_next(const SlowRows& slow_rows);
   /// @param u_x_per_shear  see statics::Statics::slid_to
   statics::Equilibrium slid_to(const motion::SlowSlip& state, std::vector<double> u_x_per_shear) const;
@@ -79,11 +87,12 @@ class Sequence {
   record::LoadingRow row(record::LoadingPhase phase, double shear_m,
                          const record::StaticState& tractions) const;
   /// By the state in which it begins.
-  void predict(record::SequenceEvent& event) const;
+  void predict(record::SequenceEvent& event);
   void add_event(const Result& result, const record::LoadingRow& before, const record::LoadingRow& after,
                  const record::StaticState& tractions_after);
 
   input::Case config_;
+  std::optional<input::Case> event_config_;  ///< where mu_s grows at rest
   InitialState initial_;
   statics::Statics statics_;
   solid::Operator plate_;

@@ -150,7 +150,7 @@ bool SequenceSession::run_event() {
   const auto dir = event_dir(sequence_->events().size() + 1);
   results::ResultFolder event_folder(dir, event_work, &folder_);
   const auto finished = event_folder.has_unfinished() ? resume(event_folder, nullptr, options_, hooks)
-                                                      : run_into(event_folder, config_, options_, hooks);
+                                                      : run_into(event_folder, sequence_->config_of_event(), options_, hooks);
   const auto& event = finished.result.event;
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));

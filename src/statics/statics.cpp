@@ -536,6 +536,12 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
       solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
+void Statics::set_mu_s(std::vector<double> mu_s) {
+  SLIPFRONT_ASSERT(mu_s.size() == mu_s_.size(), "mu_s of another interface");
+  mu_s_ = std::move(mu_s);
+  last_.reset();
+}
+
 Equilibrium Statics::slid_to(std::vector<Contact> contact, std::vector<double> u_x_m,
                              std::vector<double> u_x_per_shear, double shear_m) const {
   for (std::size_t k = 0; k < u_x_per_shear.size(); ++k) u_x_m[k] -= shear_m * u_x_per_shear[k];

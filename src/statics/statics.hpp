@@ -105,6 +105,9 @@ class Statics {
   /// @param u_x_m  displacements along x relative to those of a base [interface nodes]
   void hold(std::vector<Contact> contact, std::vector<double> u_x_m);
 
+  /// Other coefficients at rest, from here on. [interface nodes]
+  void set_mu_s(std::vector<double> mu_s);
+
   /// Equilibrium at the shear at which the largest t/(mu_s p) inside equals `share`.
   /// @throws UserError where no shear does it.
   Equilibrium shear_to(double share) const;

@@ -55,5 +55,18 @@ TEST_F(FiveNodes, NodesBesideDoNotCount) {
   EXPECT_EQ(ends_after_s(), 11);
 }
 
+TEST(StickCriterion, WaitsWhereANodeSlipsFasterThanEquilibriaMay) {
+  statics::Equilibrium state;
+  state.tractions.x_m = {0, 1};
+  state.contact.resize(2);
+  StickCriterion criterion(state, {0, 1}, 10, 1e-3);
+  const auto goes_on = [&](std::int64_t step, double fastest_m_per_s) {
+    return criterion.after_step({step, step_s}, {.fastest_in_contact_m_per_s = fastest_m_per_s});
+  };
+  EXPECT_TRUE(goes_on(12, 2e-3));
+  EXPECT_TRUE(goes_on(22, 1e-3));
+  EXPECT_FALSE(goes_on(23, 1e-3));
+}
+
 }  // namespace
 }  // namespace slipfront::motion

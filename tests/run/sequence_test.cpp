@@ -11,6 +11,8 @@
 #include <set>
 
 #include "cases.hpp"
+#include "input/friction_along_x.hpp"
+#include "interface/friction/rate_and_state.hpp"
 #include "results/folder.hpp"
 #include "run/choices.hpp"
 #include "run/sequence_session.hpp"
@@ -35,6 +37,26 @@ input::Case sequence_case(int max_events, double mu_k = 0.6) {
   config.time.quiet_s = 0.45e-3;
   config.time.end_s = 11e-3;
   test::law(config).mu_k = mu_k;
+  return config;
+}
+
+/// Stick-slip of a small block in some seconds.
+input::Case rate_and_state_case(int max_events) {
+  input::Case config;
+  config.plate = {.width_m = 0.04, .height_m = 0.02, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  config.material.stiffness_damping_s = 2e-6;
+  interface::RateAndStateAging law;
+  law.a = 0.01;
+  law.b = 0.02;
+  law.d_c_m = 1e-7;
+  law.V_i_m_per_s = 1e-6;
+  config.friction = law;
+  config.loading.mean_pressure_Pa = 5e6;
+  config.loading.edge_margin_m = 4e-3;
+  config.loading.shear_speed_over_c_L = 1e-9;
+  config.sequence.max_events = max_events;
+  config.time.quiet_s = 0.1e-3;
+  config.time.end_s = 4e-3;
   return config;
 }
 
@@ -266,12 +288,12 @@ std::map<std::string, std::string> tables_in(const fs::path& dir) {
   return files;
 }
 
-TEST(SequenceInAFolder, IsTheSameWhereverItWasStopped) {
+/// That a sequence of three events goes on as if it had never stopped. @param n_tables  of all its files
+void expect_same_wherever_stopped(const input::Case& config, std::size_t n_tables) {
   const test::TemporaryFolder folder;
-  const auto config = sequence_case(3);
   start_sequence(folder / "whole", config);
   const auto expected = tables_in(folder / "whole");
-  ASSERT_EQ(expected.size(), 3 + 3 * 6U);
+  ASSERT_EQ(expected.size(), n_tables);
   for (const auto& [part, step] : {std::pair{"event 1", 1}, {"event 1", 200}, {"event 3", 150}}) {
     const auto dir = folder / fmt::format("stopped in {} at {}", part, step);
     EXPECT_THROW(start_sequence(dir, config, stopping_at(part, step)), Interrupted);
@@ -280,6 +302,20 @@ TEST(SequenceInAFolder, IsTheSameWhereverItWasStopped) {
     EXPECT_TRUE(is_complete(dir));
     EXPECT_EQ(tables_in(dir), expected) << part << " at " << step;
   }
+}
+
+TEST(SequenceInAFolder, IsTheSameWhereverItWasStopped) {
+  expect_same_wherever_stopped(sequence_case(3), 3 + 3 * 6);
+}
+
+TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedWhileItHeals) {
+  auto config = sequence_case(3);
+  config.sequence.healing_per_e_fold = 0.02;
+  expect_same_wherever_stopped(config, 3 + 3 * 7);  // each event has its friction.csv
+}
+
+TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedUnderALawWithAState) {
+  expect_same_wherever_stopped(rate_and_state_case(3), 3 + 3 * 7);  // and slow slip before it
 }
 
 TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
@@ -372,6 +408,100 @@ TEST(SequenceInAFolder, AnEventIsGoneOnWithAsPartOfItsSequenceAlone) {
   const auto event_dir = dir / "unfinished" / "events" / "0001";
   EXPECT_THAT(error_of([&] { results::ResultFolder held(event_dir, run_work); }),
               HasSubstr("another run keeps"));
+}
+
+TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
+  auto config = sequence_case(5, 1.0);
+  config.sequence.healing_per_e_fold = 0.02;
+  config.sequence.healing_time_s = 2;
+  const double mu_s = test::law(config).mu_s;
+  Sequence sequence(config, test::go_on);
+  std::vector<double> slipped_at_s;  // [nodes]
+  while (sequence.end().empty()) {
+    const auto* initial = sequence.next();
+    const double now_s = sequence.loading().back().time_s;
+    const auto& of_event = sequence.config_of_event();
+    const auto& x_m = initial->common.tractions.x_m;
+    slipped_at_s.resize(x_m.size());
+    const auto laws = input::friction_at(of_event, x_m);
+    double nearest = 0;
+    for (std::size_t k = 0; k < x_m.size(); ++k) {
+      // The event begins a margin of load later than t/p reaches mu_s.
+      const double grown = mu_s + 0.02 * std::log(1 + (now_s - slipped_at_s[k]) / 2);
+      EXPECT_NEAR(laws[k].parameter("mu_s"), grown, 1e-4) << k;
+      const auto& s = initial->spontaneous;
+      if (s.is_inside(x_m[k]))
+        nearest =
+            std::max(nearest, s.tractions.t_s_Pa[k] / (s.tractions.p_s_Pa[k] * laws[k].parameter("mu_s")));
+    }
+    EXPECT_NEAR(nearest, 1 + config.loading.critical_margin, 1e-6);
+    const auto result = run_from(of_event, *initial, test::go_on);
+    for (const auto& onset : result.event.record.onsets) slipped_at_s[onset.node] = now_s;
+    sequence.take(result);
+  }
+  const auto& rows = sequence.loading();
+  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-10 * rows.back().energies.top_work);
+  // Without healing the same comes earlier.
+  config.sequence.healing_per_e_fold = 0;
+  Sequence strong_at_once(config, test::go_on);
+  strong_at_once.next();
+  EXPECT_LT(strong_at_once.loading().back().time_s, sequence.events().front().begin_s);
+}
+
+TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
+  const auto config = rate_and_state_case(4);
+  Sequence sequence(config, test::go_on);
+  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
+  while (sequence.end().empty()) {
+    std::vector<double> psi_before, psi_first;
+    const auto* initial =
+        sequence.next([&](const record::History& row) { psi_before = row.law_states.front(); });
+    ASSERT_NE(initial, nullptr);
+    EXPECT_EQ(initial->law_states.front(), psi_before);
+    const auto& begins = sequence.loading().back();
+    EXPECT_EQ(begins.phase, LoadingPhase::event_begins);
+    EXPECT_GE(begins.fastest_slip_rate_m_per_s, rate_m_per_s);
+    EXPECT_LE(begins.fastest_slip_rate_m_per_s, 1.1 * rate_m_per_s);
+    const auto result = run_from(config, *initial, test::go_on);
+    // It goes on from the slip rates and the state with which slow slip has ended.
+    const auto& history = result.event.history;
+    const std::size_t n = history.x_m.size();
+    double fastest = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      EXPECT_NEAR(history.law_states.front()[k], psi_before[k], 1e-12);
+      fastest = std::max(fastest, history.slip_rate_m_per_s[k]);
+    }
+    EXPECT_NEAR(fastest / begins.fastest_slip_rate_m_per_s, 1, 0.1);
+    sequence.take(result);
+  }
+  const auto& rows = sequence.loading();
+  EXPECT_GT(std::ranges::count(rows, LoadingPhase::creeps, &LoadingRow::phase), 20);
+  double largest = 0;
+  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.top_work));
+  for (const auto& row : rows) {
+    EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), 1e-10 * largest);
+    EXPECT_NEAR(row.time_s, row.shear_m / top_speed_m_per_s(config), 1e-9 * row.time_s);
+  }
+  // Stick-slip: the force falls in each of the last events, and slip comes to metres a second.
+  const auto& events = sequence.events();
+  for (std::size_t k = 2; k < events.size(); ++k) {
+    EXPECT_EQ(events[k].is_global, 1) << k;
+    EXPECT_LT(events[k].friction_after, events[k].friction_before - 0.01) << k;
+    EXPECT_GT(events[k].begin_s, events[k - 1].begin_s + 1) << k;
+  }
+}
+
+TEST(Sequence, TimesOfEventsDependLittleOnTheSlipRateAtWhichInertiaCounts) {
+  std::vector<double> last_s;
+  for (const double factor : {0.5, 1.0, 2.0}) {
+    auto config = rate_and_state_case(4);
+    config.sequence.inertia_slip_rate_m_per_s = factor * input::inertia_slip_rate_m_per_s(config);
+    Sequence sequence(config, test::go_on);
+    while (sequence.end().empty()) run_next(sequence, config);
+    last_s.push_back(sequence.events().back().begin_s);
+  }
+  EXPECT_NEAR(last_s[0] / last_s[1], 1, 0.01);
+  EXPECT_NEAR(last_s[2] / last_s[1], 1, 0.01);
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ PHASES = {
     "slip_ends": "where event {} ends",
     "at_rest": "at rest behind event {}",
     "loaded": "at the end of the loading",
+    "creeps": "in slow slip behind event {}",
 }
 RATIO = "F<sub>S</sub>/F<sub>N</sub>"
 
