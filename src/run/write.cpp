@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -265,10 +266,17 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
 }
 
 void write_json(const std::filesystem::path& dir, const Json& json) {
-  files::write_text(dir / "run.json", json.dump(2) + "\n");
+  files::write_text(dir / run_file, json.dump(2) + "\n");
 }
 
 }  // namespace
+
+int sessions_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const auto json = Json::parse(stream, nullptr, false);
+  const auto at = json.find("sessions");
+  return json.is_object() && at != json.end() && at->is_number_integer() ? at->get<int>() : 0;
+}
 
 Status status_of(const Result& result) {
   const auto& event = result.event;
