@@ -387,8 +387,10 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
     signal = abs(K) / float(np.sqrt(max(variance * of_K, 1e-300)))
     if signal < LEAST_SIGNAL:
         return no_tip(
-            gauge, f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed; above "
-            f"{limit:.5g} m/s fronts have another", doubts
+            gauge,
+            f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed; above "
+            f"{limit:.5g} m/s fronts have another",
+            doubts,
         )
     covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
     errors = np.sqrt(np.diag(covariance))

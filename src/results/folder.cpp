@@ -490,7 +490,7 @@ void seal(const fs::path& dir, const files::Checksums& others) {
       [&](const std::string& name) {
         const fs::path path(name);
         if (path.filename() != files::checksum_list || !path.has_parent_path()) return;
-        files::read_checksums(dir / path.parent_path());  // else the set would be published with a damaged list
+        files::read_checksums(dir / path.parent_path());  // a damaged one is not published
         sealed.insert(path.parent_path().string());
       },
       [](const std::string&) {});

@@ -125,8 +125,8 @@ void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
 const InitialState* Sequence::next() {
   const auto start = Clock::now();
   const double margin = config_.loading.critical_margin;
-  // Where that is passed at rest, no shear needs to be found, nor may be there: a strength with a memory leaves
-  // nodes beyond mu_s.
+  // Where a share is passed at rest, there may be no shear that brings it about: a strength with a memory
+  // leaves nodes beyond mu_s.
   const auto at_share = [&](double share) {
     if (!events_.empty() && statics_.share_of_strength(at_rest_) >= share) return at_rest_;
     auto state = statics_.shear_to(share);

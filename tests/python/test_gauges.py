@@ -425,7 +425,9 @@ def test_the_command_says_where_no_front_passes(tmp_path, capsys):
     picture.unlink()
     assert gauges_command.main(said) == 0
     (again, note) = capsys.readouterr().out.splitlines()
-    assert again.startswith("quiet: no front passes: ") and note == f"{picture}: not drawn: no gauge has a fit"
+    assert (
+        again.startswith("quiet: no front passes: ") and note == f"{picture}: not drawn: no gauge has a fit"
+    )
     assert not picture.exists()
 
 

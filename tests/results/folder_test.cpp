@@ -403,8 +403,9 @@ TEST_F(ResultFolders, NeitherFilesNorLinksAreTakenForItsFolders) {
     else
       test::write_file(folder / "sub", "mine");
     test::write_file(folder / files::checksum_list, files::sha256("") + "  sub/a.txt\n");
-    EXPECT_THAT(error_of([&] { publish(folder.path(), {"sub/run.json"}); }),
-                HasSubstr((folder / "sub").string() + ": is no folder, where one is to go; move it away; the"));
+    EXPECT_THAT(
+        error_of([&] { publish(folder.path(), {"sub/run.json"}); }),
+        HasSubstr((folder / "sub").string() + ": is no folder, where one is to go; move it away; the"));
     EXPECT_THAT(names_below(elsewhere.path()), IsEmpty());
     publish(folder.path(), {"run.json"});
     EXPECT_TRUE(fs::exists(folder / "sub"));

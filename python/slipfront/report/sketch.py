@@ -140,6 +140,7 @@ def sketch(run: Run) -> str:
         zone += text(0.5 * (from_x + to_x), interface + 17, "trigger", colour="#a04000")
     pushed = pusher_m(run)
     size = (x - 8, "end") if pushed is None else (x + 8, "start")  # beside the pusher there is no room
+    more = "" if pushed is None else " At the left: the pusher."
     bottom = interface + depth
     parts = [
         '<defs><marker id="arrow" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="6" markerHeight="6" '
@@ -165,6 +166,5 @@ def sketch(run: Run) -> str:
         f'<figure class="sketch"><svg viewBox="0 0 {full_w:.0f} {full_h:.0f}" width="{full_w:.0f}" '
         f'height="{full_h:.0f}" role="img" aria-label="The case, to scale">{"".join(parts)}</svg>'
         "<figcaption>To scale. Edges: thick, displacement prescribed or held; dashed, absorbing; dotted, "
-        f"periodic; thin, free of traction. Dots: probes.{'' if pushed is None else ' At the left: the pusher.'}"
-        "</figcaption></figure>"
+        f"periodic; thin, free of traction. Dots: probes.{more}</figcaption></figure>"
     )
