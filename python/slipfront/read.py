@@ -237,7 +237,7 @@ class Place:
         """A mark with the reason, or a reason that begins as the mark does, and says it all."""
         if not self.reason:
             return mark
-        return self.reason if self.reason.split()[0] == mark.split()[0] else f"{mark} ({self.reason})"
+        return self.reason if self.reason.split()[:1] == mark.split()[:1] else f"{mark} ({self.reason})"
 
     def remarks(self, last_s: float) -> list[str]:
         """Lines to print beside the figures."""

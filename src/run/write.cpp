@@ -272,10 +272,13 @@ void write_json(const std::filesystem::path& dir, const Json& json) {
 }  // namespace
 
 int sessions_of(const std::filesystem::path& file) {
+  if (!files::is_file(file)) return 0;
   std::ifstream stream(file);
   const auto json = Json::parse(stream, nullptr, false);
   const auto at = json.find("sessions");
-  return json.is_object() && at != json.end() && at->is_number_integer() ? at->get<int>() : 0;
+  const auto n = json.is_object() && at != json.end() && at->is_number() ? at->get<double>() : 0;
+  constexpr double most = 1e6;
+  return n >= 1 && n <= most ? static_cast<int>(n) : 0;
 }
 
 Status status_of(const Result& result) {
