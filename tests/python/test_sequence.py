@@ -118,6 +118,37 @@ def test_a_study_is_of_one_event(study, tmp_path):
     assert "sequence.max_events is 4; a study is of one event" in refusal(found)
 
 
+# Slip spreads from the pushed end past the margin, where the tilt lifts the other one.
+SPREADING = """\
+[plate]
+element_size_m = 4e-3
+corner = "none"
+[loading]
+mean_pressure_Pa = 5e6
+tilt_difference_m = -6.5e-4
+pusher_from_m = 4e-3
+pusher_to_m = 8e-3
+edge_margin_m = 16e-3
+[friction]
+mu_s = 0.7
+mu_k = 0.3
+[event]
+kind = "spontaneous"
+[sequence]
+max_events = 6
+"""
+
+
+def test_events_before_one_that_is_not_found_stay(tmp_path):
+    line = refusal(program("run", write_case(tmp_path, SPREADING), "-q", "-o", "out", cwd=tmp_path))
+    found = re.search(
+        r":\d+: event (\d) is not found: slip spreads .*; the partial results are in \S+/unfinished$", line
+    )
+    sequence = slipfront.open(tmp_path / "out")
+    assert (sequence.status, len(sequence.runs)) == ("failed", int(found[1]) - 1)
+    assert f"failed at event {found[1]} (" in page_of(tmp_path / "out")
+
+
 # Opened
 
 
