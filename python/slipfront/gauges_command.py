@@ -7,9 +7,11 @@ import argparse
 import csv
 import io
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from slipfront import command
@@ -18,7 +20,7 @@ from slipfront.files import DataError, is_folder
 from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, gauges_of, read_gauges
 from slipfront.opened import OpenRun
 from slipfront.read import read_place
-from slipfront.tip_fit import TipFit, fit_tips
+from slipfront.tip_fit import TipFit, bodies_of, fit_tips, limiting_speed_m_per_s
 
 MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
 MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
@@ -193,6 +195,26 @@ def with_error(value: float, error: float) -> str:
     return f"{value:.4g} +- {error:.2g}" if error == error else f"{value:.4g}"
 
 
+def too_fast(fit: TipFit, run: OpenRun) -> TipFit:
+    """The fit, with a word of the run's fronts that pass its gauge too fast for the field."""
+    limit, fronts = limiting_speed_m_per_s(bodies_of(run)), run.fronts
+    if fronts.sizes.get("point", 0) == 0:
+        return fit
+    height_m, off_m = abs(fit.y_m), np.abs(fronts["x_m"].to_numpy() - fit.x_m)
+    at = fronts.isel(point=(off_m == off_m.min()) & (off_m < height_m))
+    told = [
+        f"front {front} passes at {1e6 * onset_s:.4g} us with {speed:.4g} m/s, above the limiting speed, "
+        f"{limit:.5g} m/s: the fit does not apply"
+        for front, onset_s, speed in zip(
+            *(at[n].to_numpy() for n in ("front_id", "onset_s", "v_tip_m_per_s")), strict=True
+        )
+        if speed > limit and not abs(onset_s - fit.tip_s) > height_m / limit  # NaN without a tip
+    ]
+    if not told:
+        return fit
+    return replace(fit, doubts=told + fit.doubts[0 if fit.has_tip else 1 :])
+
+
 def line_of(fit: TipFit) -> str:
     if not fit.has_tip:
         return in_words(f"{fit.gauge}: {'; '.join(fit.doubts)}")
@@ -244,13 +266,17 @@ def work(options: argparse.Namespace) -> list[str]:
             direction=options.direction, r_min_m=options.r_min_m, r_max_m=options.r_max_m,
             step=not options.no_step,
         )  # fmt: skip
+        if run is not None:
+            fits = [too_fast(fit, run) for fit in fits]
         is_strain = {gauge.name: gauge.is_strain for gauge in gauges}
         lines, rows = [line_of(fit) for fit in fits], [row_of(fit, is_strain[fit.gauge]) for fit in fits]
     if options.output is not None:
         command.require_own(options.output, MARK.encode(), "a table of slipfront gauges")
         with command.publishing_into(options.output.parent) as made:
             (made / options.output.name).write_text(MARK + as_csv(rows), encoding="utf-8")
-    if options.figure is not None:
+    if options.figure is not None and options.compare is None and not any(fit.has_tip for fit in fits):
+        notes.append(f"{options.figure}: not drawn: no gauge has a fit")
+    elif options.figure is not None:
         from slipfront.figures.gauges import draw_comparison, draw_fits
         from slipfront.figures.picture import write_results
 

@@ -29,6 +29,7 @@ EVENT_NAMES = {
     "from_x_m": "left end of what slips",
     "to_x_m": "right end of what slips",
     "length_m": "length of the interface that slips",
+    "nucleation_length_m": "nucleation length before the event: what slips over less stops by itself",
     "is_global": "1 where all nodes inside slip",
     "potency_m2": "slip at rest, summed over the interface",
     "mean_slip_m": "potency over the length",

@@ -233,16 +233,19 @@ class Place:
         ending = STATUSES[self.status]
         return "" if ending is None else f"{ending} t = {1e6 * last_s:.4g} µs"
 
+    def with_reason(self, mark: str) -> str:
+        """A mark with the reason, or a reason that begins as the mark does, and says it all."""
+        if not self.reason:
+            return mark
+        return self.reason if self.reason.split()[:1] == mark.split()[:1] else f"{mark} ({self.reason})"
+
     def remarks(self, last_s: float) -> list[str]:
         """Lines to print beside the figures."""
         mark = self.mark(last_s)
         if not mark:
             return list(self.notes)
-        because = f" ({self.reason})" if self.reason else ""
-        return [
-            f"{self.folder}: {mark}{because}: the figures show what there is".replace("µs", "us"),
-            *self.notes,
-        ]
+        told = f"{self.folder}: {self.with_reason(mark)}: the figures show what there is"
+        return [told.replace("µs", "us"), *self.notes]
 
 
 @dataclass(frozen=True)

@@ -155,6 +155,11 @@ class Tip:
         return Trial(square, left, bool(along[-1] * r[-1, -1] > 0))
 
 
+def limiting_speed_m_per_s(bodies: _core.Case) -> float:
+    """From which on there is no such field."""
+    return float(_core.TipField(bodies, 0.0, 1).limiting_speed_m_per_s)
+
+
 def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
     """See case_of_bodies; refused where they differ."""
     case = case_of_bodies(given)
@@ -257,7 +262,7 @@ def fit_tip(
     if tip_s is not None:
         tip_s = number(tip_s, "tip_s", finite=True)
     case = bodies_of(bodies)
-    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
+    limit = limiting_speed_m_per_s(case)
     height = abs(gauge.y_m)
     r_m = (
         number(r_min_m, "r_min_m", least=0),
@@ -289,7 +294,7 @@ def sought(
     tip_s: float | None, step: bool, r_m: tuple[float, float],
 ) -> TipFit:  # fmt: skip
     """The best fit from starts at these speeds; `given`: the one speed is kept."""
-    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
+    limit = limiting_speed_m_per_s(case)
     starts = []
     for way in (1, -1) if direction is None else (direction,):
         tip = Tip(gauge, case, way, step, r_m)
@@ -382,7 +387,10 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
     signal = abs(K) / float(np.sqrt(max(variance * of_K, 1e-300)))
     if signal < LEAST_SIGNAL:
         return no_tip(
-            gauge, f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed", doubts
+            gauge,
+            f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed; above "
+            f"{limit:.5g} m/s fronts have another",
+            doubts,
         )
     covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
     errors = np.sqrt(np.diag(covariance))

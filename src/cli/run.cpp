@@ -187,9 +187,9 @@ run::Finished run_or_go_on(const RunArguments& options, results::ResultFolder& f
 void print_event(std::size_t number, const record::SequenceEvent& e) {
   print(
       "event {}: at {:.4g} s, x = {:.4f} to {:.4f} m{}, mean slip {:.3g} m, F_S/F_N {:.4f} to {:.4f}, {} "
-      "fronts\n",
+      "{}\n",
       number, e.begin_s, e.from_x_m, e.to_x_m, e.is_global != 0 ? " (global)" : "", e.mean_slip_m,
-      e.friction_before, e.friction_after, e.n_fronts);
+      e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
 }
 
 void run_sequence(const RunArguments& options, results::ResultFolder& folder,
@@ -209,7 +209,12 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
   if (options.quiet) return;
   const auto& strongest = record::strongest(finished.loading);
   print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal, strongest.n_events);
-  print("ended after {} events: {}\n", finished.events.size(), finished.end);
+  const auto n_events = finished.events.size();
+  print("ended after {} event{}: {}\n", n_events, n_events == 1 ? "" : "s", finished.end);
+  const auto& events = finished.events;
+  if (std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
+    print("{} of them longer than the nucleation length\n",
+          std::ranges::count_if(events, record::has_nucleated));
   print("results: {}\n", folder.dir().string());
 }
 

@@ -182,16 +182,17 @@ std::string drop(const std::function<bool(const Setting&)>& is_dropped, const st
 
 /// Where an override decides that a key of the file does not apply, that is out of date rather than wrong.
 std::string drop_keys_that_overrides_exclude(const Case& config, Document& document) {
-  std::vector<std::string> why;
+  std::vector<std::string> why, dropped;
   const auto overridden = [&](const Entry& entry) {
     return std::ranges::any_of(entry.only_with->setting.keys, [&](const std::string& key) {
       const Setting* setting = document.find(key);
-      if (!setting || !setting->is_override()) return false;
+      if (!setting) return false;
+      if (contains_word(dropped, key)) return true;
+      if (!setting->is_override()) return false;
       if (!contains_word(why, setting->place)) why.push_back(setting->place);
       return true;
     });
   };
-  std::vector<std::string> dropped;
   for (const Entry& entry : common_entries())
     if (!applies(entry, config) && overridden(entry)) dropped.push_back(entry.key);
   return drop([&](const Setting& setting) { return contains_word(dropped, setting.key); },

@@ -82,7 +82,7 @@ struct SequenceEvent {
   double begin_s = 0;  ///< since the tilt
   double shear_m = 0;
   double begin_x_m = nan, from_x_m = nan, to_x_m = nan;
-  double length_m = 0;
+  double length_m = 0, nucleation_length_m = nan;
   double is_global = 0;
   double potency_m2 = 0, mean_slip_m = 0, max_slip_m = 0;
   double normal_force_N_per_m = 0, shear_force_N_per_m = 0, friction_before = 0, friction_after = 0;
@@ -96,13 +96,15 @@ struct SequenceEvent {
   void serialize(Archive& archive);
 };
 
-inline constexpr std::array<Column<SequenceEvent, double>, 24> sequence_event_fields = {{
+inline constexpr std::array<Column<SequenceEvent, double>, 25> sequence_event_fields = {{
     {"begin_s", "s", "time since the tilt at which it begins", &SequenceEvent::begin_s},
     {"shear_m", "m", "displacement of the top edge or the pusher then", &SequenceEvent::shear_m},
     {"begin_x_m", "m", "where slip begins inside", &SequenceEvent::begin_x_m},
     {"from_x_m", "m", "left end of what slips", &SequenceEvent::from_x_m},
     {"to_x_m", "m", "right end", &SequenceEvent::to_x_m},
     {"length_m", "m", "length of the interface that slips", &SequenceEvent::length_m},
+    {"nucleation_length_m", "m", "nucleation length before it: what slips over less stops by itself",
+     &SequenceEvent::nucleation_length_m},
     {"is_global", "1", "1 where all nodes inside slip", &SequenceEvent::is_global},
     {"potency_m2", "m2", "slip at rest, summed over the interface", &SequenceEvent::potency_m2},
     {"mean_slip_m", "m", "potency over the length", &SequenceEvent::mean_slip_m},
@@ -127,6 +129,11 @@ inline constexpr std::array<Column<SequenceEvent, double>, 24> sequence_event_fi
     {"median_speed_m_per_s", "m/s", "median speed of the longest front",
      &SequenceEvent::median_speed_m_per_s},
 }};
+
+/// Whether an event has grown beyond its nucleation length.
+inline bool has_nucleated(const SequenceEvent& event) {
+  return event.length_m > event.nucleation_length_m;
+}
 
 template <class Archive>
 void SequenceEvent::serialize(Archive& archive) {

@@ -36,6 +36,11 @@ constexpr const char* kind_name = "kind";
 constexpr std::array names_of_run = {"case.resolved.toml", "run.json",   "interface.h5", "fronts.csv",
                                      "fracture.csv",       "static.csv", "energy.csv",   "fields.vtkhdf",
                                      "sequence.json",      "events.csv", "loading.csv"};
+/// Of a sequence: with a folder for each event, see event_folder, and for the slow slip before it, which has
+/// but a history.
+constexpr const char* events_name = "events";
+constexpr const char* slow_name = "slow";
+constexpr const char* history_name = "interface.h5";
 
 std::string overwrite_option() {
   return for_caller("--overwrite", "overwrite=True");
@@ -114,43 +119,73 @@ void walk(const fs::path& dir, const std::string& prefix, const std::function<vo
   }
 }
 
-/// Names in the folder's list of checksums, in the lists that it names, and these lists. What is not in a
-/// folder below it, but behind a link, is none of the set.
-std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = "") {
-  std::set<std::string> names;
-  for (const auto& [name, sum] : files::read_checksums(dir / prefix)) {
-    const fs::path path(name);
-    const bool is_inner = path.has_parent_path();
-    if (is_inner && !files::is_folder((dir / prefix / path).parent_path())) continue;
-    if (is_inner && path.filename() == files::checksum_list)
-      names.merge(set_of(dir, prefix + path.parent_path().string() + "/"));
-    else
-      names.insert(prefix + name);
-  }
-  if (!names.empty()) names.insert(prefix + files::checksum_list);
+/// Whether a folder holds a run or a sequence.
+bool holds_run(const fs::path& dir) {
+  return (files::is_file(dir / "run.json") || files::is_file(dir / "sequence.json")) &&
+         files::is_file(dir / "case.resolved.toml");
+}
+
+/// What a sequence's folder has where folders of events go, or of the slow slip before them, by the names in
+/// it.
+std::vector<std::string> numbers_in(const fs::path& dir) {
+  if (!files::is_folder(dir)) return {};
+  auto names = names_in(dir);
+  std::erase_if(names, [](const std::string& name) {
+    return name.size() < 4 || name.find_first_not_of("0123456789") != std::string::npos;
+  });
   return names;
 }
 
-/// The files of an earlier set. Of a damaged list nothing is believed: in a folder that holds a run they are
-/// those that a run has.
-std::set<std::string> earlier_set(const fs::path& dir) {
-  std::set<std::string> names;
+/// Names in a folder's list of checksums; none where it is missing or damaged.
+std::vector<std::string> listed_in(const fs::path& dir) {
+  std::vector<std::string> names;
   try {
-    names = set_of(dir);
+    for (const auto& [name, sum] : files::read_checksums(dir)) names.push_back(name);
   } catch (const UserError&) {
   }
-  const bool has_run = files::is_file(dir / "run.json") || files::is_file(dir / "sequence.json");
-  if (names.empty() && has_run && files::is_file(dir / "case.resolved.toml"))
-    names.insert(names_of_run.begin(), names_of_run.end());
+  return names;
+}
+
+/// Names in the folder's list of checksums, in the lists that it names, and these lists. What is not in a
+/// folder below it, but behind a link, is none of the set. Of a damaged list nothing is believed: in a folder
+/// that holds a run they are those that a run has, and the sets of its events.
+std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = "") {
+  std::set<std::string> names;
+  const auto add_set_in = [&](const fs::path& folder) { names.merge(set_of(dir, folder.string() + "/")); };
+  const auto listed = listed_in(dir / prefix);
+  for (const auto& name : listed) {
+    const fs::path path = prefix / fs::path(name);
+    const bool is_inner = fs::path(name).has_parent_path();
+    if (is_inner && !files::is_folder(dir / path.parent_path())) continue;
+    names.insert(path.string());
+    if (is_inner && path.filename() == files::checksum_list) add_set_in(path.parent_path());
+  }
+  if (listed.empty() && holds_run(dir / prefix)) {
+    for (const char* name : names_of_run) names.insert(prefix + name);
+    for (const auto& name : numbers_in(dir / prefix / events_name))
+      add_set_in(fs::path(prefix) / events_name / name);
+    for (const auto& name : numbers_in(dir / prefix / slow_name))
+      names.insert((fs::path(prefix) / slow_name / name / history_name).string());
+  }
+  if (!names.empty()) names.insert(prefix + files::checksum_list);
   return names;
 }
 
 /// Refuses to replace a file that is not of an earlier set.
 void require_of_set(const std::set<std::string>& earlier, const fs::path& dir, const std::string& name,
                     const std::string& results_are) {
+  if (files::is_folder(dir / name))
+    throw UserError("{}: is a folder where a result file is to go; move it away{}", (dir / name).string(),
+                    results_are);
   if (files::is_there(dir / name) && !earlier.contains(name))
     throw UserError("{}: is not of earlier results, and would be replaced; move it away{}",
                     (dir / name).string(), results_are);
+}
+
+/// Refuses anything else where a folder is to go.
+void require_folder_or_nothing(const fs::path& path, const std::string& results_are) {
+  if (files::is_there(path) && !files::is_folder(path))
+    throw UserError("{}: is no folder, where one is to go; move it away{}", path.string(), results_are);
 }
 
 /// Removes what writing that was cut off has left.
@@ -174,6 +209,22 @@ void remove_others(const fs::path& dir, const char* name) {
   if (!files::is_folder(dir)) return;
   for (const auto& other : names_in(dir))
     if (other != name) remove_tree(dir / other);
+}
+
+/// The files of a set that is being moved to its folder, wherever they are now.
+std::set<std::string> fresh_set(const fs::path& publishing, const fs::path& dir) {
+  auto names = set_of(publishing);
+  walk(
+      publishing, "", [&](const std::string& name) { names.insert(name); }, [](const std::string&) {});
+  // A list that has been moved is read where it is now.
+  for (const auto& name : listed_in(publishing)) {
+    names.insert(name);
+    const fs::path path(name);
+    if (path.filename() == files::checksum_list && path.has_parent_path() &&
+        !files::is_there(publishing / path))
+      names.merge(set_of(dir, path.parent_path().string() + "/"));
+  }
+  return names;
 }
 
 /// Removes a folder's state; the kind last, so that what is left of it is known for what it is.
@@ -251,7 +302,8 @@ void ResultFolder::make(const ResultFolder* within) {
   if (dir_.relative_path().empty())
     throw UserError("output folder \"{}\": is {}; name a folder for these results", dir_.string(),
                     dir_.empty() ? "no name" : "the root of all folders");
-  // Its own end would take what another process keeps in it.
+  // Its own end would take what another process keeps in it; and a sequence is of its own events alone.
+  fs::path child;
   for (fs::path p = fs::absolute(dir_, error); p.has_relative_path(); p = p.parent_path()) {
     if (within != nullptr && p == fs::absolute(within->unfinished(), error)) break;
     const auto name = p.filename();
@@ -259,6 +311,10 @@ void ResultFolder::make(const ResultFolder* within) {
       throw UserError(
           "output folder {}: is inside {}, where another run keeps its work; choose another place",
           dir_.string(), p.string());
+    if ((child == events_name || child == slow_name) && files::is_file(p / "sequence.json"))
+      throw UserError("output folder {}: is part of the sequence in {}; choose another place", dir_.string(),
+                      p.string());
+    child = name;
   }
   const auto status = fs::status(dir_, error);
   if (!fs::exists(status) && error && error != std::errc::no_such_file_or_directory)
@@ -320,11 +376,7 @@ bool ResultFolder::has_unfinished() const {
 }
 
 void ResultFolder::require_empty(bool overwrite, bool resumes) const {
-  if (overwrite) {
-    const auto earlier = earlier_set(dir_);
-    for (const std::string name : names_of_run) require_of_set(earlier, dir_, name, "");
-    return;
-  }
+  if (overwrite) return require_room(0);
   const bool goes_on = resumes && has_unfinished();
   if (is_under_way(unfinished()) && !goes_on) {
     const std::string work = read_line(state() / kind_name), command = work.substr(0, work.find(" with "));
@@ -344,6 +396,22 @@ void ResultFolder::require_empty(bool overwrite, bool resumes) const {
                     dir_.string(), overwrite_option());
 }
 
+void ResultFolder::require_room(std::int64_t n_events) const {
+  const auto earlier = set_of(dir_);
+  for (const char* name : names_of_run) require_of_set(earlier, dir_, name, "");
+  if (n_events == 0) return;
+  for (const auto& [folder, most] : {std::pair{events_name, n_events}, {slow_name, n_events + 1}}) {
+    require_folder_or_nothing(dir_ / folder, "");
+    for (const auto& name : numbers_in(dir_ / folder)) {
+      if (name.size() > 9 || std::stoll(name) > most) continue;
+      const auto of_event = fs::path(folder) / name;
+      require_folder_or_nothing(dir_ / of_event, "");
+      for (const char* file : names_of_run) require_of_set(earlier, dir_, of_event / file, "");
+      require_of_set(earlier, dir_, of_event / files::checksum_list, "");
+    }
+  }
+}
+
 void ResultFolder::begin() {
   if (files::is_there(unfinished())) remove_work(unfinished());
   files::make_folder(unfinished());
@@ -361,14 +429,11 @@ void ResultFolder::abandon() {
 
 void ResultFolder::publish(bool adds) {
   remove_report(unfinished());  // of a part of them
-  const auto earlier = earlier_set(dir_);
+  const auto earlier = set_of(dir_);
   const auto results_are = fmt::format("; the results are in {}", unfinished().string());
   walk(
       unfinished(), "", [](const std::string&) {},
-      [&](const std::string& name) {
-        if (files::is_there(dir_ / name) && !files::is_folder(dir_ / name))
-          throw UserError("{}: is no folder, where one is to go; move it away", (dir_ / name).string());
-      });
+      [&](const std::string& name) { require_folder_or_nothing(dir_ / name, results_are); });
   walk(
       unfinished(), "", [&](const std::string& name) { require_of_set(earlier, dir_, name, results_are); },
       [](const std::string&) {});
@@ -386,8 +451,8 @@ void ResultFolder::finish_publication() {
   if (!files::is_there(publishing())) return;
   if (!is_own_publication(publishing())) throw_foreign(publishing(), "folder");
   if (files::is_there(publishing() / files::checksum_list)) {
-    const auto fresh = set_of(publishing());
-    auto stale = earlier_set(dir_);
+    const auto fresh = fresh_set(publishing(), dir_);
+    auto stale = set_of(dir_);
     for (const auto& name : fresh) stale.erase(name);
     // Lists last: as long as they are there, what they name can be found.
     const auto is_list = [](const std::string& name) {
@@ -433,8 +498,9 @@ void seal(const fs::path& dir, const files::Checksums& others) {
       dir, "",
       [&](const std::string& name) {
         const fs::path path(name);
-        if (path.filename() == files::checksum_list && path.has_parent_path())
-          sealed.insert(path.parent_path().string());
+        if (path.filename() != files::checksum_list || !path.has_parent_path()) return;
+        files::read_checksums(dir / path.parent_path());  // a damaged one is not published
+        sealed.insert(path.parent_path().string());
       },
       [](const std::string&) {});
   walk(
@@ -446,6 +512,14 @@ void seal(const fs::path& dir, const files::Checksums& others) {
       },
       [](const std::string&) {});
   files::write_checksums(dir, checksums);
+}
+
+fs::path event_folder(const fs::path& dir, std::size_t number) {
+  return dir / events_name / fmt::format("{:04}", number);
+}
+
+fs::path slow_folder(const fs::path& dir, std::size_t number) {
+  return dir / slow_name / fmt::format("{:04}", number);
 }
 
 fs::path published(const fs::path& dir, const std::string& name) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -40,6 +41,8 @@ class ResultFolder {
   /// Refuses a folder that holds anything, unless it is to be overwritten.
   /// @param resumes  unfinished work of this kind is welcome
   void require_empty(bool overwrite, bool resumes = false) const;
+  /// Refuses what is in the way of results, with up to so many folders of events: foreign files, links.
+  void require_room(std::int64_t n_events) const;
 
   /// Begins the work anew; what was left unfinished is removed.
   void begin();
@@ -74,6 +77,10 @@ void remove_tree(const std::filesystem::path& path);
 /// list. Lists end the writing of a set: what has one is complete.
 /// @param others  of files elsewhere that belong to the set
 void seal(const std::filesystem::path& dir, const files::Checksums& others = {});
+
+/// The folder of an event in that of its sequence, by its number from 1, and that of the slow slip before it.
+std::filesystem::path event_folder(const std::filesystem::path& dir, std::size_t number);
+std::filesystem::path slow_folder(const std::filesystem::path& dir, std::size_t number);
 
 /// The file of a set in a folder, which may be on its way to it.
 std::filesystem::path published(const std::filesystem::path& dir, const std::string& name);

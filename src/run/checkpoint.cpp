@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -83,6 +84,12 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
                        initial.solver <= statics::StaticSolver::iterative &&
                        (initial.prescribed || std::isfinite(initial.critical_shear_m)),
                    "an initial state");
+  require_possible(initial.law_states.empty() || initial.law_states.size() == config.friction.states().size(),
+                   "states of friction");
+  for (const auto& values : initial.law_states)
+    require_possible(values.size() == x_m.size() &&
+                         std::ranges::all_of(values, [](double value) { return std::isfinite(value); }),
+                     "states of friction");
   require_possible(!by_ramp || (is_possible(*initial.ramp) && initial.ramp->record.x_m == x_m &&
                                 record::is_consistent(initial.ramp->record)),
                    "a ramp");

@@ -32,7 +32,7 @@ struct InitialState {
   std::vector<double> mu_s;          ///< [interface nodes] where friction varies along x, else none
   /// Of friction with a state, as in motion::Loads.
   std::vector<std::vector<double>> law_states;
-  double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly
+  double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly, or behind slow slip
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it

@@ -113,9 +113,12 @@ struct Status {
   std::string reason = {};
   int sessions = 1;  ///< times that the run was begun or gone on with
 };
+/// The sessions that a run.json or sequence.json tells of; 0 where there is none, or a damaged one.
+int sessions_of(const std::filesystem::path& file);
 /// Of a run that has ended.
 Status status_of(const Result& result);
 
+inline constexpr const char* run_file = "run.json";
 inline constexpr const char* case_file = "case.resolved.toml";
 /// Of a sequence what run.json is of a run.
 inline constexpr const char* sequence_file = "sequence.json";

@@ -182,13 +182,17 @@ void Sequence::heal_to_critical() {
 bool Sequence::stick_to_next() {
   if (input::heals(config_)) heal_to_critical();
   const double margin = config_.loading.critical_margin;
-  const auto at_least = [&](statics::Equilibrium state) {
-    return state.shear_m > at_rest_.shear_m ? std::move(state) : statics_.shear_by(at_rest_.shear_m);
+  // Where a share is passed at rest, there may be no shear that brings it about: a strength with a memory
+  // leaves nodes beyond mu_s.
+  const auto at_share = [&](double share) {
+    if (!events_.empty() && statics_.share_of_strength(at_rest_) >= share) return at_rest_;
+    auto state = statics_.shear_to(share);
+    return state.shear_m > at_rest_.shear_m ? state : at_rest_;
   };
-  auto critical = statics_.shear_to(1);
+  auto critical = at_share(1);
   initial_.critical_shear_m = critical.shear_m + held_.moved_m;
-  initial_.common = at_least(statics_.shear_to(1 - margin));
-  initial_.spontaneous = at_least(statics_.shear_to(1 + margin));
+  initial_.common = at_share(1 - margin);
+  initial_.spontaneous = at_share(1 + margin);
   const double end_s = config_.sequence.end_s;
   if (time_s(initial_.spontaneous.shear_m + held_.moved_m) > end_s) {
     const double end_m = end_s * top_speed_m_per_s(config_) - held_.moved_m;
@@ -264,7 +268,7 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   for (auto& contact : initial_.spontaneous.contact)
     if (contact == statics::Contact::slip) contact = statics::Contact::stick;
   initial_.common = initial_.spontaneous;
-  initial_.critical_shear_m = nan;
+  initial_.critical_shear_m = initial_.common.shear_m;
   initial_.law_states = {state.psi};
   if (has_forces(config_))
     initial_.loads = found_loads(config_, statics_, initial_.common, initial_.common, initial_.tributary_m);
@@ -354,6 +358,7 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
     if (const double work = result.event.breakdown.work_J_per_m2[k]; !std::isnan(work))
       e.breakdown_work_J_per_m += work * a;
   }
+  e.nucleation_length_m = result.rupture.of_nodes.nucleation_length_m.value_or(nan);
   if (e.length_m > 0) {
     e.mean_slip_m = e.potency_m2 / e.length_m;
     e.stress_drop_Pa = drop_N_per_m / e.length_m;

@@ -20,29 +20,25 @@ namespace {
 
 /// The kind of work that an event's folder holds; it is gone on with as part of its sequence.
 constexpr const char* event_work = "event of a sequence";
-constexpr const char* events_folder = "events";
-/// Histories of slow slip, each before the event of its number.
-constexpr const char* slow_folder = "slow";
-
-std::string folder_name(std::size_t k) {
-  return fmt::format("{:04}", k);
-}
 
 /// A sequence on rank 0; its events are runs on all ranks.
 class SequenceSession {
  public:
   SequenceSession(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
-                  const SessionHooks& hooks, const EventDone& done)
+                  const SessionHooks& hooks, const EventDone& done, int sessions)
       : folder_(folder),
         config_(config),
         hooks_(hooks),
         done_(done),
         options_(options),
         checkpoints_(folder.state()),
-        head_(checkpoint_head(config)) {}
+        resumed_(sessions > 0),
+        head_(checkpoint_head(config)) {
+    head_.sessions = sessions + 1;
+  }
 
   /// From a checkpoint, or from the beginning.
-  FinishedSequence run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed);
+  FinishedSequence run(std::unique_ptr<Checkpoints::Checkpoint> kept);
 
  private:
   void begin(Checkpoints::Checkpoint* kept);
@@ -50,12 +46,14 @@ class SequenceSession {
   void require_events_unchanged() const;
   /// The next event. @return false where none begins
   bool run_event();
+  /// The state in which an event begins, as Sequence::next.
+  const InitialState* load_to(const std::string& event);
   /// Between events.
   void keep();
   void write(const std::string& end, const Status& status);
   void fail(const char* status, const std::string& reason) noexcept;
   std::filesystem::path event_dir(std::size_t k) const {
-    return folder_.unfinished() / events_folder / folder_name(k);
+    return results::event_folder(folder_.unfinished(), k);
   }
 
   results::ResultFolder& folder_;
@@ -64,12 +62,13 @@ class SequenceSession {
   const EventDone& done_;
   SessionOptions options_;
   Checkpoints checkpoints_;
+  bool resumed_;
   CheckpointHead head_;
   std::unique_ptr<Sequence> sequence_;
   std::vector<std::string> sums_;  ///< of the lists of checksums of the events that are done
 };
 
-FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept, bool resumed) {
+FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
     begin(kept.get());
     kept.reset();
@@ -93,7 +92,7 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
     throw;
   } catch (const std::exception& error) {
     // An event that came to nothing has left no folder.
-    if (resumed || files::is_there(folder_.unfinished() / events_folder))
+    if (resumed_ || files::is_there(event_dir(1).parent_path()))
       fail("failed", error.what());
     else
       folder_.abandon();
@@ -102,7 +101,6 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
 }
 
 void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
-  if (kept != nullptr) head_.sessions = kept->head.sessions + 1;
   write_sequence(folder_.unfinished(), config_, {}, {}, "", {"running", "", head_.sessions});
   sequence_ = std::make_unique<Sequence>(
       config_, [this](std::int64_t, std::int64_t) { return hooks_.request() != Request::stop; },
@@ -130,18 +128,9 @@ void SequenceSession::require_events_unchanged() const {
 }
 
 bool SequenceSession::run_event() {
-  std::optional<results::ResultStream> slow;
-  const auto* initial = sequence_->next([&](const record::History& row) {
-    if (!slow) {
-      const auto dir = folder_.unfinished() / slow_folder / folder_name(sequence_->events().size() + 1);
-      files::make_folders(dir);
-      slow.emplace(dir, results::RunFiles{history_table(config_, row.x_m), {}});
-    }
-    slow->sample(row);
-  });
-  if (slow) slow->finish();
-  if (initial == nullptr) return false;
   const auto part = fmt::format("event {}", sequence_->events().size() + 1);
+  const auto* initial = load_to(part);
+  if (initial == nullptr) return false;
   auto hooks = hooks_;
   hooks.progress = [&](const char* /*part*/, std::int64_t step, std::int64_t total) {
     hooks_.progress(part.c_str(), step, total);
@@ -149,8 +138,9 @@ bool SequenceSession::run_event() {
   options_.initial_state = [initial] { return *initial; };
   const auto dir = event_dir(sequence_->events().size() + 1);
   results::ResultFolder event_folder(dir, event_work, &folder_);
-  const auto finished = event_folder.has_unfinished() ? resume(event_folder, nullptr, options_, hooks)
-                                                      : run_into(event_folder, sequence_->config_of_event(), options_, hooks);
+  const auto finished = event_folder.has_unfinished()
+                            ? resume(event_folder, nullptr, options_, hooks)
+                            : run_into(event_folder, sequence_->config_of_event(), options_, hooks);
   const auto& event = finished.result.event;
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
@@ -163,6 +153,28 @@ bool SequenceSession::run_event() {
   sequence_->take(finished.result);
   sums_.push_back(files::sha256_of_file(dir / files::checksum_list));
   return true;
+}
+
+const InitialState* SequenceSession::load_to(const std::string& event) {
+  std::optional<results::ResultStream> slow;
+  const auto take_slow = [&](const record::History& row) {
+    if (!slow) {
+      const auto dir = results::slow_folder(folder_.unfinished(), sequence_->events().size() + 1);
+      files::make_folders(dir);
+      slow.emplace(dir, results::RunFiles{history_table(config_, row.x_m), {}});
+    }
+    slow->sample(row);
+  };
+  try {
+    const auto* initial = sequence_->next(take_slow);
+    if (slow) slow->finish();
+    return initial;
+  } catch (const UserError& error) {
+    if (sequence_->events().empty()) throw;
+    Message message(fmt::format("{} is not found: {}; {}", event, error.what(), what_was_kept(folder_)));
+    message.keys = error.keys();
+    throw UserError(message);
+  }
 }
 
 void SequenceSession::keep() {
@@ -190,14 +202,14 @@ FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::C
                                    const SessionOptions& options, const SessionHooks& hooks,
                                    const EventDone& done) {
   begin_work(folder, config);
-  return SequenceSession(folder, config, options, hooks, done).run({}, false);
+  return SequenceSession(folder, config, options, hooks, done, 0).run({});
 }
 
 FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
                                  const SessionOptions& options, const SessionHooks& hooks,
                                  const EventDone& done) {
-  auto [config, kept] = take_up(folder, expected, hooks.note);
-  return SequenceSession(folder, config, options, hooks, done).run(std::move(kept), true);
+  auto [config, kept, sessions] = take_up(folder, expected, hooks.note);
+  return SequenceSession(folder, config, options, hooks, done, sessions).run(std::move(kept));
 }
 
 }  // namespace slipfront::run

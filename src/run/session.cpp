@@ -39,21 +39,22 @@ struct NoOutput final : motion::EventOutput {
 /// A run, on every rank that shares it. Rank 0 alone has the folder, the hooks and the results.
 class Session {
  public:
-  /// @param folder   null on other ranks
-  /// @param resumed  there is earlier work in the folder
+  /// @param folder    null on other ranks
+  /// @param sessions  that were before, whose work is in the folder
   Session(results::ResultFolder* folder, const input::Case& config, const SessionOptions& options,
-          const SessionHooks& hooks, bool resumed)
+          const SessionHooks& hooks, int sessions)
       : folder_(folder),
         config_(config),
         options_(options),
         hooks_(hooks),
         processes_(*options.processes),
         execution_{.threads = options.threads.value_or(suitable_threads(config))},
-        resumed_(resumed) {
+        resumed_(sessions > 0) {
     if (!is_root()) return;
     dir_ = folder->unfinished();
     checkpoints_.emplace(folder->state());
     head_ = checkpoint_head(config);
+    head_.sessions = sessions + 1;
   }
 
   /// From a checkpoint, or from the beginning.
@@ -130,10 +131,7 @@ void read_from(Checkpoints::Checkpoint* kept, Read&& read) {
 
 Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
-    if (kept) {
-      head_.sessions = kept->head.sessions + 1;
-      head_.wall_s = kept->head.wall_s;
-    }
+    if (kept) head_.wall_s = kept->head.wall_s;
     write_status(dir_, config_, {"running", "before the event", head_.sessions});
     begin_event(kept.get(), kept && kept->head.in_event);
     kept.reset();
@@ -369,8 +367,8 @@ void require_unchanged(const std::string& table, const std::string& kept, const 
 
 /// On rank 0, with the others in take_part.
 Finished run_shared(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
-                    const SessionHooks& hooks, bool resumed, std::unique_ptr<Checkpoints::Checkpoint> kept) {
-  Session session(&folder, config, options, hooks, resumed);
+                    const SessionHooks& hooks, int sessions, std::unique_ptr<Checkpoints::Checkpoint> kept) {
+  Session session(&folder, config, options, hooks, sessions);
   auto message = packed(true, kept && kept->head.in_event);
   pack_case(config, message);
   options.processes->broadcast(std::move(message));
@@ -380,9 +378,14 @@ Finished run_shared(results::ResultFolder& folder, const input::Case& config, co
   return finished;
 }
 
+void require_room(const results::ResultFolder& folder, const input::Case& config) {
+  folder.require_room(input::is_sequence(config) ? config.sequence.max_events : 0);
+}
+
 }  // namespace
 
 void begin_work(results::ResultFolder& folder, const input::Case& config) {
+  require_room(folder, config);
   try {
     folder.begin();
     write_case(folder.unfinished(), config);
@@ -395,13 +398,13 @@ void begin_work(results::ResultFolder& folder, const input::Case& config) {
 Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
                   const SessionHooks& hooks) {
   begin_work(folder, config);
-  return run_shared(folder, config, options, hooks, false, {});
+  return run_shared(folder, config, options, hooks, 0, {});
 }
 
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks) {
-  auto [config, kept] = take_up(folder, expected, hooks.note);
-  return run_shared(folder, config, options, hooks, true, std::move(kept));
+  auto [config, kept, sessions] = take_up(folder, expected, hooks.note);
+  return run_shared(folder, config, options, hooks, sessions, std::move(kept));
 }
 
 input::Case unfinished_case(const results::ResultFolder& folder, const input::Case* expected) {
@@ -424,10 +427,15 @@ UnfinishedWork take_up(const results::ResultFolder& folder, const input::Case* e
                        const std::function<void(const std::string&)>& note) {
   UnfinishedWork work{unfinished_case(folder, expected), Checkpoints(folder.state()).last(note)};
   const auto& config = work.config;
+  require_room(folder, config);
   const auto file = folder.unfinished() / case_file;
   const auto text = resolved_text(config);
+  // A session that was killed has left no checkpoint of its own, perhaps.
+  for (const char* name : {run_file, sequence_file})
+    work.sessions = std::max(work.sessions, sessions_of(folder.unfinished() / name));
   if (work.kept) {
     const auto& head = work.kept->head;
+    work.sessions = std::max(work.sessions, head.sessions);
     if (head.program != program_identity())
       throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
                       folder.unfinished().string(), files::one_line(head.program), program_identity());
@@ -450,7 +458,7 @@ void take_part(Processes& processes) {
       const auto config = unpack_case(message);
       SessionOptions options;
       options.processes = &processes;
-      Session(nullptr, config, options, {}, false).run_beside(in_event);
+      Session(nullptr, config, options, {}, 0).run_beside(in_event);
     } catch (const FailedElsewhere&) {
     }
 }

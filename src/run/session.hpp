@@ -77,6 +77,7 @@ input::Case unfinished_case(const results::ResultFolder& folder, const input::Ca
 struct UnfinishedWork {
   input::Case config;
   std::unique_ptr<Checkpoints::Checkpoint> kept;
+  int sessions = 1;  ///< so far
 };
 /// @param note  receives a message for each damaged checkpoint
 /// @throws UserError as unfinished_case, and where the checkpoint is of another program or case

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -265,10 +266,20 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
 }
 
 void write_json(const std::filesystem::path& dir, const Json& json) {
-  files::write_text(dir / "run.json", json.dump(2) + "\n");
+  files::write_text(dir / run_file, json.dump(2) + "\n");
 }
 
 }  // namespace
+
+int sessions_of(const std::filesystem::path& file) {
+  if (!files::is_file(file)) return 0;
+  std::ifstream stream(file);
+  const auto json = Json::parse(stream, nullptr, false);
+  const auto at = json.find("sessions");
+  const auto n = json.is_object() && at != json.end() && at->is_number() ? at->get<double>() : 0;
+  constexpr double most = 1e6;
+  return n >= 1 && n <= most ? static_cast<int>(n) : 0;
+}
 
 Status status_of(const Result& result) {
   const auto& event = result.event;

@@ -587,6 +587,10 @@ Equilibrium Statics::shear_to_force(double force_N_per_m) const {
   return e;
 }
 
+double Statics::share_of_strength(const Equilibrium& state) const {
+  return state.peak_ratio / ratio_at_peak(state, 1);
+}
+
 double Statics::ratio_at_peak(const Equilibrium& state, double share) const {
   const auto at = std::ranges::find(state.tractions.x_m, state.peak_x_m) - state.tractions.x_m.begin();
   return share * (state.peak_ratio > 0 ? mu_s_[at] : mu_s_.front());

@@ -112,6 +112,9 @@ class Statics {
   /// @throws UserError where no shear does it.
   Equilibrium shear_to(double share) const;
 
+  /// The largest t/(mu_s p) inside.
+  double share_of_strength(const Equilibrium& state) const;
+
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
 

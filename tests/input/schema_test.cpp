@@ -324,6 +324,15 @@ TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
   EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);
   const Case weakened = parsed(nucleated, {{"nucleation.form", "weakened"}});
   EXPECT_EQ(weakened.nucleation.overstress_Pa, Case{}.nucleation.overstress_Pa);
+  // What depends on a key that is dropped is dropped with it.
+  const std::string sequence =
+      "[event]\nkind = \"spontaneous\"\n[sequence]\nmax_events = 9\nend_s = 2\nto_global_sliding = true\n";
+  const Case single = parsed(sequence, {{"event.kind", "left"}});
+  EXPECT_FALSE(is_sequence(single) || single.sequence.to_global_sliding);
+  EXPECT_EQ(single.sequence.end_s, Case{}.sequence.end_s);
+  // Without what it depends on a key is wrong all the same.
+  expect_message(parse_error("[sequence]\nend_s = 2\n", {{"event.kind", "left"}}),
+                 "c.toml:2: sequence.end_s applies only with sequence.max_events > 1");
   // An override of a key that does not apply is wrong all the same.
   expect_message(parse_error(nucleated, {{"event.kind", "left"}, {"nucleation.x_m", "0.1"}}),
                  "--set nucleation.x_m=0.1: nucleation.x_m applies only with");

@@ -18,6 +18,7 @@ from slipfront.report import setup
 from slipfront.report.command import main
 from slipfront.report.run import thin_run
 from slipfront.report.run_data import wave_speeds
+from slipfront.report.sketch import sketch
 from slipfront.units import attributes, engineering, name_of, quantity
 
 T_PA, P_PA = 2.4e6, 4e6
@@ -291,6 +292,25 @@ def test_the_sketch_is_to_scale(pair):
     assert w / h == pytest.approx(150 / 60, rel=1e-2)
     assert base_w == w and h / base_h == pytest.approx(2, rel=1e-2)
     assert svg.count("<circle") == 2 and "p = 4 MPa" in svg and ">base</text>" in svg
+
+
+def test_the_sketch_shows_where_it_is_sheared(tilted):
+    """By the top edge, or by the pusher at its heights and nothing else."""
+    run = thin_run(tilted)
+    heights = {"pusher_from_m": 20e-3, "pusher_to_m": 60e-3}
+    pushed = replace(run, case=run.case | {"loading": run.case["loading"] | heights})
+    rectangle = r'<rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"'
+    (plate, _), (same, _, block) = (
+        [[float(number) for number in found] for found in re.findall(rectangle, sketch(of))]
+        for of in (run, pushed)
+    )
+    x, y, _, height = plate
+    assert same == plate and block[0] + block[2] == x
+    bottom, top = (y + height - 1e3 * at / 100 * height for at in heights.values())
+    assert [block[1], block[1] + block[3]] == pytest.approx([top, bottom], abs=0.2)
+    assert ">t</text>" in sketch(run) and ">t</text>" not in sketch(pushed)
+    of_both = [sketch(of).count("marker-end") for of in (run, pushed)]
+    assert of_both[0] == of_both[1]  # in place of that at the top
 
 
 # Panels

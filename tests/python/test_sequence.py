@@ -118,6 +118,37 @@ def test_a_study_is_of_one_event(study, tmp_path):
     assert "sequence.max_events is 4; a study is of one event" in refusal(found)
 
 
+# Slip spreads from the pushed end past the margin, where the tilt lifts the other one.
+SPREADING = """\
+[plate]
+element_size_m = 4e-3
+corner = "none"
+[loading]
+mean_pressure_Pa = 5e6
+tilt_difference_m = -6.5e-4
+pusher_from_m = 4e-3
+pusher_to_m = 8e-3
+edge_margin_m = 16e-3
+[friction]
+mu_s = 0.7
+mu_k = 0.3
+[event]
+kind = "spontaneous"
+[sequence]
+max_events = 6
+"""
+
+
+def test_events_before_one_that_is_not_found_stay(tmp_path):
+    line = refusal(program("run", write_case(tmp_path, SPREADING), "-q", "-o", "out", cwd=tmp_path))
+    found = re.search(
+        r":\d+: event (\d) is not found: slip spreads .*; the partial results are in \S+/unfinished$", line
+    )
+    sequence = slipfront.open(tmp_path / "out")
+    assert (sequence.status, len(sequence.runs)) == ("failed", int(found[1]) - 1)
+    assert f"failed at event {found[1]} (" in page_of(tmp_path / "out")
+
+
 # Opened
 
 
@@ -233,7 +264,14 @@ def test_the_page_holds_each_event(folder, tmp_path):
     sequence = slipfront.open(folder)
     text = page_of(folder, tmp_path / "page.html")
     data = data_of(text)["sequence"]
-    assert data["units"] == {"x": "mm", "time": "s", "slip": "µm"}
+    assert data["units"] == {"x": "mm", "time": "s", "slip": "µm", "force": "kN/m"}
+    assert data["strength"] == sequence.case["friction"]["mu_s"]
+    rests = sequence.loading.isel(row=(sequence.loading["phase"] == "at_rest").to_numpy())
+    for name, force in (
+        ("force_before", sequence.events["shear_force_N_per_m"]),
+        ("force_after", rests["shear_force_N_per_m"]),
+    ):
+        np.testing.assert_allclose([event[name] for event in data["events"]], 1e-3 * force, rtol=1e-4)
     assert [event["number"] for event in data["events"]] == [1, 2, 3, 4]
     for name, column, factor in (
         ("time", "begin_s", 1),
@@ -246,7 +284,7 @@ def test_the_page_holds_each_event(folder, tmp_path):
         drawn = [event[name] for event in data["events"]]
         np.testing.assert_allclose(drawn, factor * sequence.events[column], rtol=1e-4)
     np.testing.assert_allclose(data["slip"]["after"], 1e6 * np.cumsum(sequence.slip, axis=0), rtol=1e-4)
-    assert len(data["loading"]["time"]) == 1 + 2 * N_EVENTS
+    assert {len(values) for values in data["loading"].values()} == {1 + 2 * N_EVENTS}
     rows = re.findall(r"<tr><td>(\d+)</td>", text)
     assert rows == ["1", "2", "3", "4"]
     for part in ("coarse sequence", "complete: sequence.max_events = 4 was reached", "where event 1 begins"):
@@ -269,7 +307,7 @@ def test_the_page_of_a_sequence_that_is_not_over(interrupted):
     text = page_of(interrupted)
     assert len(data_of(text)["sequence"]["events"]) == 2
     assert "<h1>coarse sequence: interrupted at event 3</h1>" in text
-    assert "interrupted in event 3 at t =" in text
+    assert "<b>interrupted in event 3 at t = " in text and "event 3 (" not in text
 
 
 def test_the_page_of_a_sequence_without_an_event(interrupted):
@@ -330,7 +368,9 @@ def test_extents_of_events_are_those_of_cracks_in_the_tractions_before(tmp_path)
     sequence = slipfront.run(write_case(tmp_path, WEAKENING), output=tmp_path / "out", progress=False)
     events = sequence.events
     d_c_m, three_process_zones_m = 4e-6, 0.015
-    ran = np.flatnonzero(events.mean_slip_m > d_c_m)  # others stop while they nucleate
+    nucleated = (events.length_m > events.nucleation_length_m).to_numpy()  # others stop before
+    assert (nucleated == (events.mean_slip_m > d_c_m)).all() and not nucleated.all()
+    ran = np.flatnonzero(nucleated)
     assert len(ran) > 1
     for end in ("from_x_m", "to_x_m"):
         off_m = (events[end] - events[f"predicted_{end}"]).to_numpy()[ran]

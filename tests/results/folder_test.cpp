@@ -179,6 +179,121 @@ TEST_F(ResultFolders, ASetMayHaveFoldersWithSetsOfTheirOwn) {
                                                                 "left/run.json", "left/checksums.sha256"));
 }
 
+/// Publishes a sequence of so many events, each of the given content.
+void publish_sequence(const fs::path& dir, int n_events, const std::string& content) {
+  ResultFolder held(dir, "run");
+  held.begin();
+  for (int k = 1; k <= n_events; ++k) {
+    const auto event = event_folder(held.unfinished(), k);
+    fs::create_directories(event);
+    for (const char* name : {"case.resolved.toml", "energy.csv", "run.json"})
+      files::write_text(event / name, content);
+    seal(event);
+  }
+  for (const char* name : {"case.resolved.toml", "events.csv", "sequence.json"})
+    files::write_text(held.unfinished() / name, content);
+  held.publish();
+}
+
+void require_sequence(const fs::path& dir, int n_events, const std::string& content) {
+  files::require_intact(dir);
+  EXPECT_EQ(test::read_file(dir / "events.csv"), content);
+  EXPECT_THAT(names_below(dir), ::testing::SizeIs(4 + 1 + 5 * n_events));
+  for (int k = 1; k <= n_events; ++k) {
+    files::require_intact(event_folder(dir, k));
+    EXPECT_EQ(test::read_file(event_folder(dir, k) / "energy.csv"), content);
+  }
+}
+
+/// Wherever its publication is cut off, over an earlier one.
+TEST_F(ResultFolders, ASequenceWhosePublicationWasCutOffIsEnded) {
+  const test::TemporaryFolder fresh;
+  publish_sequence(fresh.path(), 2, "new");
+  const auto names = names_below(fresh.path());
+  for (std::size_t n_moved = 0; n_moved < names.size(); ++n_moved) {
+    const test::TemporaryFolder folder;
+    publish_sequence(folder.path(), 3, "old");
+    fs::remove_all(event_folder(folder.path(), 3));  // what is stale goes first
+    fs::copy(fresh.path(), folder / "publishing", fs::copy_options::recursive);
+    fs::create_directories(folder / "publishing/state");
+    test::write_file(folder / "publishing/state/kind", "run\n");
+    std::size_t k = 0;
+    for (const auto& name : names)
+      if (k++ < n_moved && name != files::checksum_list && !fs::is_directory(fresh / name)) {
+        fs::rename(folder / "publishing" / name, folder / name);
+        std::error_code is_not_empty;
+        fs::remove((folder / "publishing" / name).parent_path(), is_not_empty);
+      }
+    { const ResultFolder claimed(folder.path(), "run"); }
+    require_sequence(folder.path(), 2, "new");
+  }
+}
+
+TEST_F(ResultFolders, ADamagedListOfAnEventIsInNobodysWay) {
+  for (const char* damaged : {"events/0001/checksums.sha256", "checksums.sha256"}) {
+    const test::TemporaryFolder folder;
+    publish_sequence(folder.path(), 3, "old");
+    test::write_file(folder / damaged, "no list\n");
+    publish_sequence(folder.path(), 2, "new");  // over it
+    require_sequence(folder.path(), 2, "new");
+  }
+  // On its way: it arrives as it is, and can be replaced.
+  publish_sequence(folder_ / "a", 2, "old");
+  fs::rename(folder_ / "a", folder_ / "publishing");
+  test::write_file(folder_ / "publishing/events/0001/checksums.sha256", "no list\n");
+  fs::create_directories(folder_ / "publishing/state");
+  test::write_file(folder_ / "publishing/state/kind", "run\n");
+  { const ResultFolder claimed(folder_.path(), "run"); }
+  EXPECT_FALSE(fs::exists(folder_ / "publishing"));
+  EXPECT_THAT(error_of([&] { files::require_intact(folder_.path()); }), HasSubstr("does not match"));
+  publish_sequence(folder_.path(), 2, "new");
+  require_sequence(folder_.path(), 2, "new");
+  // Nor is it published.
+  ResultFolder held(folder_ / "b", "run");
+  held.begin();
+  fs::create_directories(event_folder(held.unfinished(), 1));
+  test::write_file(event_folder(held.unfinished(), 1) / files::checksum_list, "no list\n");
+  EXPECT_THAT(error_of([&] { held.publish(); }), HasSubstr("is not a list of checksums"));
+  EXPECT_TRUE(held.has_unfinished());
+}
+
+TEST_F(ResultFolders, WhatIsInTheWayOfEventsIsFoundBeforeTheStart) {
+  const test::TemporaryFolder elsewhere;
+  for (const std::string name : {"events", "events/0001", "events/0002", "events/0001/run.json",
+                                 "events/0002/interface.h5", "events/0001/checksums.sha256"})
+    for (const char* what : {"file", "folder", "link"}) {
+      const bool is_for_folder = fs::path(name).extension().empty();
+      if (what == std::string("folder") && is_for_folder) continue;
+      const test::TemporaryFolder folder;
+      fs::create_directories((folder / name).parent_path());
+      if (what == std::string("file")) test::write_file(folder / name, "mine");
+      if (what == std::string("folder")) fs::create_directory(folder / name);
+      if (what == std::string("link")) fs::create_symlink(elsewhere.path(), folder / name);
+      const ResultFolder held(folder.path(), "run");
+      EXPECT_THAT(error_of([&] { held.require_room(2); }),
+                  ::testing::AllOf(HasSubstr((folder / name).string() + ": is "), EndsWith("; move it away")))
+          << name << " " << what;
+      EXPECT_EQ(error_of([&] { held.require_room(0); }), "(nothing thrown)");  // of a single run
+    }
+  // An earlier sequence is not, nor what is not of this one.
+  publish_sequence(folder_.path(), 2, "old");
+  fs::create_directory(folder_ / "events/0003");
+  test::write_file(folder_ / "events/0003/run.json", "mine");
+  test::write_file(folder_ / "events/notes.txt", "mine");
+  const ResultFolder held(folder_.path(), "run");
+  EXPECT_EQ(error_of([&] { held.require_room(2); }), "(nothing thrown)");
+  EXPECT_THAT(error_of([&] { held.require_room(3); }), HasSubstr("0003/run.json: is not of earlier results"));
+}
+
+TEST_F(ResultFolders, IsNoPartOfASequence) {
+  publish_sequence(folder_.path(), 1, "old");
+  for (const char* name : {"events", "events/0001", "events/0002", "events/mine"})
+    EXPECT_EQ(error_of([&] { ResultFolder(folder_ / name, "run"); }),
+              "output folder " + (folder_ / name).string() + ": is part of the sequence in " +
+                  folder_.path().string() + "; choose another place");
+  EXPECT_NO_THROW(ResultFolder(folder_ / "other", "run"));
+}
+
 TEST_F(ResultFolders, ASetMayBeAddedTo) {
   publish(folder_.path(), {"a.json", "b.json"});
   publish(folder_.path(), {"b.json", "c.json"}, true);
@@ -288,8 +403,9 @@ TEST_F(ResultFolders, NeitherFilesNorLinksAreTakenForItsFolders) {
     else
       test::write_file(folder / "sub", "mine");
     test::write_file(folder / files::checksum_list, files::sha256("") + "  sub/a.txt\n");
-    EXPECT_EQ(error_of([&] { publish(folder.path(), {"sub/run.json"}); }),
-              (folder / "sub").string() + ": is no folder, where one is to go; move it away");
+    EXPECT_THAT(
+        error_of([&] { publish(folder.path(), {"sub/run.json"}); }),
+        HasSubstr((folder / "sub").string() + ": is no folder, where one is to go; move it away; the"));
     EXPECT_THAT(names_below(elsewhere.path()), IsEmpty());
     publish(folder.path(), {"run.json"});
     EXPECT_TRUE(fs::exists(folder / "sub"));

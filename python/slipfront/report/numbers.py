@@ -28,6 +28,7 @@ UNITS: dict[str, tuple[tuple[float, Unit], ...]] = {
     "slip": ((2e-3, Unit("µm", 1e6)), (0.5, Unit("mm", 1e3)), (np.inf, Unit("m", 1.0))),
     "traction": ((2e3, Unit("Pa", 1.0)), (2e5, Unit("kPa", 1e-3)), (np.inf, Unit("MPa", 1e-6))),
     "strain": ((2e-3, Unit("10⁻⁶", 1e6)), (np.inf, Unit("10⁻³", 1e3))),
+    "force": ((2e3, Unit("N/m", 1.0)), (2e6, Unit("kN/m", 1e-3)), (np.inf, Unit("MN/m", 1e-6))),
     "speed": ((np.inf, Unit("m/s", 1.0)),),
 }
 

@@ -65,7 +65,7 @@ def mesh_words(run: Run) -> str:
 def ending(run: Run) -> str:
     """Whether a run is complete, and why it ended, in plain words."""
     if STATUSES[run.status] is not None:
-        return f"<b>{words(run.mark)}</b>" + (f": {words(run.reason)}" if run.reason else "")
+        return f"<b>{words(run.place.with_reason(run.mark))}</b>"
     end = str(run.info.get("end", ""))
     return "complete: " + words(ENDS.get(end, end) or "why it ended is not given")
 

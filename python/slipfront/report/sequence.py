@@ -14,7 +14,7 @@ from slipfront.figures.report import formatted, table
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
-from slipfront.read import STATUSES, Place, is_sequence, read_place
+from slipfront.read import STATUSES, Place, entry, is_sequence, read_place
 from slipfront.report import setup
 from slipfront.report.numbers import Unit, listed, unit
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
@@ -58,7 +58,7 @@ def ending(place: Place, n_events: int) -> str:
     """Whether a sequence is complete, and why it ended, in plain words."""
     told = mark(place, n_events)
     if told:
-        return f"<b>{words(told)}</b>" + (f": {words(place.reason)}" if place.reason else "")
+        return f"<b>{words(place.with_reason(told))}</b>"
     return f"complete: {words(place.info.get('end') or 'why it ended is not given')}"
 
 
@@ -106,6 +106,13 @@ def setup_section(place: Place, sequence: OpenSequence, remarks: list[str]) -> s
     )
 
 
+def local_strength(case: dict[str, Any]) -> float | None:
+    """mu_s, where it is one number along the interface."""
+    mu_s, varied = entry(case, "friction", "mu_s"), entry(case, "friction", "random_key")
+    is_one = not entry(case, "friction", "file") and varied in (None, "", "none")
+    return mu_s if is_number(mu_s) and is_one else None
+
+
 def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
     """All that the plots show; there is an event."""
     events, slip = sequence.events, sequence.slip
@@ -115,13 +122,17 @@ def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
     units = {
         "x": unit("length", slip["x_m"]),
         "time": unit("time", static["time_s"]),
+        "force": unit("force", static["shear_force_N_per_m"]),
         "slip": unit("slip", after),
     }
+    at_rest = static.isel(row=(static["phase"] == "at_rest").to_numpy())
     colours = matplotlib.colormaps[COLOURS](np.linspace(0, LIGHTEST, events.sizes["event"]))
     columns = {
         "time": listed(events["begin_s"], units["time"].factor),
         "before": listed(events["friction_before"]),
         "after": listed(events["friction_after"]),
+        "force_before": listed(events["shear_force_N_per_m"], units["force"].factor),
+        "force_after": listed(at_rest["shear_force_N_per_m"], units["force"].factor),
         **{part: listed(events[f"{part}_x_m"], units["x"].factor) for part in ("begin", "from", "to")},
         "number": events["event"].to_numpy().tolist(),
         "colour": [to_hex(colour) for colour in colours],
@@ -131,7 +142,9 @@ def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
         "loading": {
             "time": listed(static["time_s"], units["time"].factor),
             "ratio": listed(static["shear_over_normal"]),
+            "force": listed(static["shear_force_N_per_m"], units["force"].factor),
         },
+        "strength": local_strength(sequence.case),
         "events": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
         "slip": {
             "x": listed(slip["x_m"][nodes], units["x"].factor),
@@ -153,10 +166,11 @@ def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
         section(
             "forces",
             "Loads",
-            plot("forces-plot", "Shear over normal force over time, with the drop of each event"),
+            plot("forces-plot", "Shear over normal force, and shear force, over time"),
             f"<p>{RATIO}: shear over normal force of the interface in static equilibria, the coefficient of "
-            "friction of the sample. Filled: an event begins; open: the equilibrium at rest behind it. From "
-            "event to event the line is straight, whatever happens there.</p>",
+            f"friction of the sample; dashed: {setup.MU_S} of a node, where all have the same. Filled: an "
+            "event begins; open: the equilibrium at rest behind it. From event to event the line is "
+            "straight, whatever happens there.</p>",
         ),
         section(
             "extents",
@@ -230,7 +244,7 @@ def page(folder: Path, _file: Path) -> Page:
     told = mark(place, n_events)
     title = str(place.info.get("title", "")) or place.name
     data = sequence_data(sequence) if n_events else {}
-    remarks = [*([f"{told}: {place.reason}" if place.reason else told] if told else []), *place.notes]
+    remarks = [*([place.with_reason(told)] if told else []), *place.notes]
     missing = set() if data else {"forces", "extents", "slips"}
     return Page(
         title=f"{title}: {told}" if told else title,

@@ -12,6 +12,7 @@ from slipfront.units import quantity
 WIDTH, HEIGHT = 460.0, 300.0  # of the bodies at most
 LEFT, TOP, RIGHT, BOTTOM = 80.0, 46.0, 26.0, 44.0  # of the labels around them
 RIGID = 12.0  # of the strip that stands for a plane
+PUSHER = 8.0  # of the block that stands for it
 PLATE, BASE, TRIGGER, LINE = "#dce8f4", "#ece4d2", "#d55e00", "#333"
 MOST_NAMES = 12
 
@@ -87,8 +88,22 @@ def probes(run: Run, x0: float, y0: float, scale: float) -> str:
     return "".join(drawn)
 
 
+def pusher_m(run: Run) -> tuple[float, float] | None:
+    """The heights between which the left side is pushed."""
+    from_m, to_m = (entry(run.case, "loading", f"pusher_{end}_m") for end in ("from", "to"))
+    return (from_m, to_m) if is_number(from_m) and is_number(to_m) and to_m > from_m else None
+
+
+def pusher(x: float, from_y: float, to_y: float) -> str:
+    """A block at the left side, and an arrow of where it moves."""
+    return (
+        f'<rect x="{x - PUSHER:.1f}" y="{to_y:.1f}" width="{PUSHER}" height="{from_y - to_y:.1f}" '
+        f'fill="{LINE}"/>'
+    ) + arrow(x - PUSHER - 30, 0.5 * (from_y + to_y), x - PUSHER - 2, 0.5 * (from_y + to_y))
+
+
 def load(run: Run, x: float, w: float, y: float) -> str:
-    """Arrows of what presses and shears, above the plate."""
+    """Arrows of what presses and, unless a side is pushed, shears, above the plate."""
     p, t = (entry(run.case, "prestress", f"{name}_Pa") for name in "pt")
     known = is_uniform(run) and is_number(p) and is_number(t)
     pressure = f"p = {quantity(p, 'Pa')}" if known else "p"
@@ -97,7 +112,7 @@ def load(run: Run, x: float, w: float, y: float) -> str:
     from_x, to_x = (x + 0.6 * w, x + 0.6 * w + 46) if forward else (x + 0.6 * w + 46, x + 0.6 * w)
     parts = [arrow(x + 0.3 * w + k * 12, y - 32, x + 0.3 * w + k * 12, y - 8) for k in (-1, 0, 1)]
     parts.append(text(x + 0.3 * w - 20, y - 20, pressure, "end"))
-    if not known or t != 0:
+    if pusher_m(run) is None and (not known or t != 0):
         parts += [arrow(from_x, y - 16, to_x, y - 16), text(x + 0.6 * w + 23, y - 24, shear)]
     return "".join(parts)
 
@@ -123,6 +138,9 @@ def sketch(run: Run) -> str:
         from_x, to_x = (x + scale * at for at in driven)
         zone = line(from_x, interface, to_x, interface, f'stroke="{TRIGGER}" stroke-width="6"')
         zone += text(0.5 * (from_x + to_x), interface + 17, "trigger", colour="#a04000")
+    pushed = pusher_m(run)
+    size = (x - 8, "end") if pushed is None else (x + 8, "start")  # beside the pusher there is no room
+    more = "" if pushed is None else " At the left: the pusher."
     bottom = interface + depth
     parts = [
         '<defs><marker id="arrow" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="6" markerHeight="6" '
@@ -136,7 +154,8 @@ def sketch(run: Run) -> str:
         zone,
         load(run, x, w, y),
         probes(run, x, interface, scale),
-        text(x - 8, y + 0.5 * h + 5, quantity(height_m, "m"), "end"),
+        "" if pushed is None else pusher(x, *(interface - scale * at for at in pushed)),
+        text(size[0], y + 0.5 * h + 5, quantity(height_m, "m"), size[1]),
         text(x - 8, interface + 0.5 * depth + 5, quantity(base_m, "m") if base_m else "rigid", "end"),
         text(x + 0.5 * w, bottom + 20, quantity(width_m, "m")),
         arrow(x, bottom + 34, x + 34, bottom + 34),
@@ -147,5 +166,5 @@ def sketch(run: Run) -> str:
         f'<figure class="sketch"><svg viewBox="0 0 {full_w:.0f} {full_h:.0f}" width="{full_w:.0f}" '
         f'height="{full_h:.0f}" role="img" aria-label="The case, to scale">{"".join(parts)}</svg>'
         "<figcaption>To scale. Edges: thick, displacement prescribed or held; dashed, absorbing; dotted, "
-        "periodic; thin, free of traction. Dots: probes.</figcaption></figure>"
+        f"periodic; thin, free of traction. Dots: probes.{more}</figcaption></figure>"
     )

@@ -10,13 +10,29 @@ function eventMarks(name, events, x, y, symbol, told) {
     hovertemplate: '%{text}: %{y:.4f} at %{x:.5g}<extra></extra>'};
 }
 
-function drawForces({units, loading, events}) {
-  const line = {type: 'scatter', mode: 'lines', name: 'static equilibria', x: loading.time, y: loading.ratio, hoverinfo: 'skip',
+/** The loads over time in one of the two panels. */
+function loads({loading, events}, panel, values, before, after) {
+  const line = {type: 'scatter', mode: 'lines', name: 'static equilibria', x: loading.time, y: values, hoverinfo: 'skip',
     line: {color: '#555', width: 1.5}};
-  const traces = [line, eventMarks('event begins', events, (e) => e.time, (e) => e.before, 'circle', 'begins'),
-    eventMarks('at rest', events, (e) => e.time, (e) => e.after, 'circle-open', 'at rest')];
-  const layout = layoutWith({xaxis: axis(`t since the tilt (${units.time})`), yaxis: axis(forceRatio, {rangemode: 'tozero'}),
-    hovermode: 'closest', legend: {x: 1.02, y: 1}});
+  const traces = [line, eventMarks('event begins', events, (e) => e.time, before, 'circle', 'begins'),
+    eventMarks('at rest', events, (e) => e.time, after, 'circle-open', 'at rest')];
+  return traces.map((trace) => ({...trace, xaxis: `x${panel}`, yaxis: `y${panel}`, showlegend: panel === ''}));
+}
+
+function drawForces(sequence) {
+  const {units, loading, strength} = sequence;
+  const traces = [...loads(sequence, '', loading.ratio, (e) => e.before, (e) => e.after),
+    ...loads(sequence, '2', loading.force, (e) => e.force_before, (e) => e.force_after)];
+  if (strength !== null) {
+    traces.push({type: 'scatter', mode: 'lines', name: 'μ<sub>s</sub> of a node', x: [loading.time[0], loading.time.at(-1)], y: [strength, strength],
+      hoverinfo: 'skip', line: {color: '#555', width: 1, dash: 'dash'}});
+  }
+  const time = `t since the tilt (${units.time})`;
+  const layout = layoutWith({
+    xaxis: axis(time, {domain: [0, 0.45], anchor: 'y'}), yaxis: axis(forceRatio, {rangemode: 'tozero'}),
+    xaxis2: axis(time, {domain: [0.56, 1], anchor: 'y2'}), yaxis2: axis(`F<sub>S</sub> (${units.force})`, {rangemode: 'tozero', anchor: 'x2'}),
+    hovermode: 'closest', legend: {x: 1.02, y: 1},
+  });
   return Plotly.react('forces-plot', traces, layout, CONFIG);
 }
 
