@@ -153,6 +153,11 @@ inline bool is_sequence(const Case& config) {
   return config.sequence.max_events > 1;
 }
 
+/// Whether slow slip lies between its events.
+inline bool is_slow(const Case& config) {
+  return is_sequence(config) && config.friction.has_state();
+}
+
 /// Whether mu_s of nodes at rest grows between its events.
 inline bool heals(const Case& config) {
   return is_sequence(config) && config.sequence.healing_per_e_fold > 0;

@@ -307,8 +307,7 @@ Condition in_sequence() {
   return {Message("{} > 1", Key("sequence.max_events")), is_sequence};
 }
 Condition in_slow_sequence() {
-  return {Message("{} > 1 and a {} with a state", Key("sequence.max_events"), Key("friction.law")),
-          [](const Case& c) { return is_sequence(c) && c.friction.has_state(); }};
+  return {Message("{} > 1 and a {} with a state", Key("sequence.max_events"), Key("friction.law")), is_slow};
 }
 Condition in_sticking_sequence() {
   return {Message("{} > 1 and a {} with mu_s", Key("sequence.max_events"), Key("friction.law")),

@@ -390,6 +390,14 @@ void check_pusher(const Case& config) {
 void check_sequence(const Case& config) {
   if (!is_sequence(config)) return;
   const Key quiet("time.quiet_s"), events("sequence.max_events");
+  if (is_slow(config) && config.loading.solver == StaticSolver::iterative)
+    throw UserError(
+        "{} = iterative does not condense the interface for slow slip between events; choose direct or auto",
+        Key("loading.solver"));
+  if (is_slow(config) && !interface::follows_pressure(config.regularisation))
+    throw UserError(
+        "{} = initial_pressure leaves no pressure to slow slip between events; choose none or pressure",
+        Key("friction.regularisation"));
   const double quiet_s = config.time.quiet_s;
   if (!(quiet_s < config.time.end_s))
     throw UserError("{} is {:g} s; with {} > 1 it must be less than {} = {:g} s: each event comes to rest",

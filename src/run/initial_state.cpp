@@ -241,9 +241,11 @@ statics::Statics statics_of(const input::Case& config, const mesh::Mesh& plate,
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (base_mesh) base.emplace(statics::ElasticBody{*base_mesh, base_material});
+  auto loading = config.loading;
+  loading.solver = wanted_solver(config);
   return {{plate, config.material},
           base,
-          config.loading,
+          loading,
           at_all_nodes(mu_s, plate),
           interface::static_coefficient_key(config.friction),
           std::move(may_continue)};

@@ -190,8 +190,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
                    prescribed_stress(config)},
       .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m),
       .sticks_within = sticks_within,
-      .slow_m_per_s =
-          sticks_within && config.friction.has_state() ? input::slow_slip_rate_m_per_s(config) : infinity};
+      .slow_m_per_s = input::is_slow(config) ? input::slow_slip_rate_m_per_s(config) : infinity};
   return {stepper, setup, monitor, output, std::move(more)};
 }
 
