@@ -69,17 +69,17 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
   if (has_fracture_energy(config)) predictor_.emplace(config);
   at_rest_ = statics_.tilted();
   loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
-  loading_.back().energies.strain = strain_energy_J_per_m(at_rest_);
+  set_stored(at_rest_, loading_.back());
 }
 
 double Sequence::time_s(double shear_m) const {
   return shear_m / top_speed_m_per_s(config_);
 }
 
-double Sequence::strain_energy_J_per_m(const statics::Equilibrium& state) const {
-  double energy = solid::strain_energy_J_per_m(plate_, state.u_m);
-  if (base_) energy += solid::strain_energy_J_per_m(*base_, state.below_u_m);
-  return energy;
+void Sequence::set_stored(const statics::Equilibrium& state, LoadingRow& row) const {
+  row.energies.strain = solid::strain_energy_J_per_m(plate_, state.u_m);
+  if (base_) row.energies.strain += solid::strain_energy_J_per_m(*base_, state.below_u_m);
+  row.energies.machine = statics_.machine_energy_J_per_m(state);
 }
 
 LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
@@ -118,7 +118,7 @@ std::string Sequence::end() const {
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
   auto loaded = row(phase, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
-  loaded.energies.strain = strain_energy_J_per_m(state);
+  set_stored(state, loaded);
   loading_.push_back(loaded);
 }
 
@@ -169,13 +169,15 @@ void Sequence::take(const Result& result) {
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
   ends.energies.kinetic = last.kinetic;
+  ends.energies.machine = begins.energies.machine + last.machine - first.machine;
   ends.energies.strain = begins.energies.stored() + last.stored() - first.stored() - last.kinetic;
+  ends.energies.strain -= ends.energies.machine;
   add_event_works(last, ends.energies);
   loading_.push_back(ends);
 
   rest();
   auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
-  rests.energies.strain = strain_energy_J_per_m(at_rest_);
+  set_stored(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
   loading_.push_back(rests);
   add_event(result, begins, rests, at_rest_.tractions);

@@ -56,7 +56,8 @@ class Sequence {
   double time_s(double shear_m) const;
   /// Adds the row of an equilibrium after the last one.
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
-  double strain_energy_J_per_m(const statics::Equilibrium& state) const;
+  /// Before its shear counts what the events have moved the plate.
+  void set_stored(const statics::Equilibrium& state, record::LoadingRow& row) const;
   /// With the works so far. @param shear_m  since the tilt
   record::LoadingRow row(record::LoadingPhase phase, double shear_m,
                          const record::StaticState& tractions) const;

@@ -34,7 +34,7 @@ struct Equilibrium {
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
   /// The same of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
-  double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
+  double shear_m = 0;  ///< displacement of what loads along x since the tilt: the edge, or the machine
   std::vector<Contact> contact;               ///< [interface nodes]
   record::StaticState tractions;              ///< [interface nodes]
   double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside
@@ -115,6 +115,10 @@ class Statics {
   /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
   Equilibrium shear_to_force(double force_N_per_m) const;
 
+  /// Energy that the machine has stored since the tilt: in its springs, and by what its constant forces have
+  /// not done. In the equilibrium of an event that moved the plate as a whole the shear is less so much.
+  double machine_energy_J_per_m(const Equilibrium& state) const;
+
   /// The loading with the displacements that give its normal force.
   const Loading& loading() const { return loading_; }
 
@@ -124,6 +128,8 @@ class Statics {
   /// Tilts the plate.
   /// @param compliance_m_per_Pa  about: displacement of the loaded edge over the mean pressure
   void press_down(double compliance_m_per_Pa);
+  /// What the machine's springs bear in the tilted plate.
+  solid::Field tilt_force_N(const solid::Material& material) const;
   /// @param sticks_inside  slip there is none, but of a guess
   template <class FindShear>
   Equilibrium shear(FindShear&& find_shear, bool sticks_inside) const;
