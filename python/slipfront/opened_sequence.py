@@ -38,7 +38,7 @@ EVENT_NAMES = {
     "friction_before": "shear over normal force where the event begins",
     "friction_after": "shear over normal force at rest",
     "stress_drop_Pa": "tangential traction before less that at rest, mean over what slips",
-    "released_J_per_m": "strain energy before less that at rest",
+    "released_J_per_m": "energy stored in bodies and machine before less that at rest",
     "friction_work_J_per_m": "energy that friction takes",
     "breakdown_work_J_per_m": "energy that friction takes above the residual traction",
     "wave_loss_J_per_m": "energy of the waves left at the end of the event",

@@ -459,7 +459,7 @@ class Maker {
     const auto& grid = blocks_.back().grid;
     for (const Node n : mesh_.far_edge_nodes) {
       const double x_m = mesh_.x_m[n], half_m = 0.5 * grid.spacing_m;
-      const bool is_end = x_m < half_m || x_m > plate_.width_m - half_m;
+      const bool is_end = !is_periodic_ && (x_m < half_m || x_m > plate_.width_m - half_m);
       const double share = (is_end ? half_m : grid.spacing_m) / plate_.width_m;
       const bool is_corner = !pushed.empty() && pushed.back() == n;
       auto& node = is_corner ? mesh_.absorbing[pushed.size() - 1] : mesh_.absorbing.emplace_back();
