@@ -55,6 +55,8 @@ LOADING_NAMES = {
     "shear_force_N_per_m": "sum of the tangential traction",
     "shear_over_normal": "shear over normal force",
     "normal_force_x_m": "where along the interface the normal force acts",
+    "pressure_moment_N": "moment of the pressure about the middle of the interface",
+    "shear_height_m": "height at which the shear force acts on the plate",
     "wave_loss_J_per_m": "energy of the waves that were left at the ends of the events so far",
 }
 

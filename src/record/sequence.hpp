@@ -34,6 +34,8 @@ struct LoadingRow {
   double normal_force_N_per_m = 0, shear_force_N_per_m = 0;
   double shear_over_normal = 0;
   double normal_force_x_m = 0;
+  double pressure_moment_N = 0;
+  double shear_height_m = nan;
   /// What is stored, and works since the tilt; between static equilibria those of the mean forces.
   Energies energies;
   double wave_loss_J_per_m = 0;
@@ -41,13 +43,13 @@ struct LoadingRow {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, n_events, time_s, shear_m, normal_force_N_per_m, shear_force_N_per_m, shear_over_normal,
-            normal_force_x_m, energies, wave_loss_J_per_m);
+            normal_force_x_m, pressure_moment_N, shear_height_m, energies, wave_loss_J_per_m);
   }
 };
 
 /// The columns of a row but for its phase, its events and the terms of its energies, which come before the
 /// last one.
-inline constexpr std::array<Column<LoadingRow, double>, 6> loading_fields = {{
+inline constexpr std::array<Column<LoadingRow, double>, 8> loading_fields = {{
     {"time_s", "s", "time since the tilt, in which the top edge moves at its speed", &LoadingRow::time_s},
     {"shear_m", "m", "displacement of the top edge or the pusher to +x since the tilt", &LoadingRow::shear_m},
     {"normal_force_N_per_m", "N/m", "sum of the pressure over the interface",
@@ -57,6 +59,10 @@ inline constexpr std::array<Column<LoadingRow, double>, 6> loading_fields = {{
      &LoadingRow::shear_over_normal},
     {"normal_force_x_m", "m", "where along the interface the normal force acts",
      &LoadingRow::normal_force_x_m},
+    {"pressure_moment_N", "N", "moment of the pressure about the middle of the interface, N m per m",
+     &LoadingRow::pressure_moment_N},
+    {"shear_height_m", "m", "height at which the shear force acts on the plate; of equilibria under load",
+     &LoadingRow::shear_height_m},
 }};
 inline constexpr Column<LoadingRow, double> wave_loss = {
     "wave_loss_J_per_m", "J/m", "energy of the waves that were left at the ends of the events so far",

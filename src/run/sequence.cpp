@@ -69,17 +69,18 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
   if (has_fracture_energy(config)) predictor_.emplace(config);
   at_rest_ = statics_.tilted();
   loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
-  set_stored(at_rest_, loading_.back());
+  add_state(at_rest_, loading_.back());
 }
 
 double Sequence::time_s(double shear_m) const {
   return shear_m / top_speed_m_per_s(config_);
 }
 
-void Sequence::set_stored(const statics::Equilibrium& state, LoadingRow& row) const {
+void Sequence::add_state(const statics::Equilibrium& state, LoadingRow& row) const {
   row.energies.strain = solid::strain_energy_J_per_m(plate_, state.u_m);
   if (base_) row.energies.strain += solid::strain_energy_J_per_m(*base_, state.below_u_m);
   row.energies.machine = statics_.machine_energy_J_per_m(state);
+  row.shear_height_m = statics_.shear_height_m(state);
 }
 
 LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
@@ -103,6 +104,8 @@ LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::Stati
   row.shear_force_N_per_m = shear;
   row.shear_over_normal = shear / normal;
   row.normal_force_x_m = moment / normal;
+  row.pressure_moment_N = moment - normal * 0.5 * (tractions.x_m.front() + tractions.x_m.back());
+  row.shear_height_m = nan;
   return row;
 }
 
@@ -118,7 +121,7 @@ std::string Sequence::end() const {
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
   auto loaded = row(phase, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
-  set_stored(state, loaded);
+  add_state(state, loaded);
   loading_.push_back(loaded);
 }
 
@@ -177,7 +180,7 @@ void Sequence::take(const Result& result) {
 
   rest();
   auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
-  set_stored(at_rest_, rests);
+  add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
   loading_.push_back(rests);
   add_event(result, begins, rests, at_rest_.tractions);

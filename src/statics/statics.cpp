@@ -396,6 +396,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
   press_down(height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0));
   tilted_top_.tilt_force_N = tilt_force_N(plate_body.material);
+  pushed_rows_ = solid::assemble_rows(mesh, plate_body.material, mesh.pushed_nodes);
   const auto tilted_u = displacement_of(tilted_);
   sheared_ =
       solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
@@ -488,6 +489,17 @@ solid::Field Statics::tilt_force_N(const solid::Material& material) const {
     force_N.y[n] = has_spring.y[n] * y;
   });
   return force_N;
+}
+
+double Statics::shear_height_m(const Equilibrium& state) const {
+  if (!mesh_.is_pushed) return mesh_.y_m[mesh_.far_edge_nodes.front()];
+  if (state.shear_m == 0) return nan;
+  double force_N = 0, moment_N_m = 0;
+  solid::for_each_row_product(pushed_rows_, state.u_m, [&](std::size_t r, double x, double /*y*/) {
+    force_N += x;
+    moment_N_m += x * mesh_.y_m[pushed_rows_.node[r]];
+  });
+  return moment_N_m / force_N;
 }
 
 double Statics::machine_energy_J_per_m(const Equilibrium& state) const {

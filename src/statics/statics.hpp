@@ -119,6 +119,10 @@ class Statics {
   /// not done. In the equilibrium of an event that moved the plate as a whole the shear is less so much.
   double machine_energy_J_per_m(const Equilibrium& state) const;
 
+  /// Where the force along x acts on the plate: at the height of the loaded edge, or amid a pusher's forces;
+  /// nan where that does not push.
+  double shear_height_m(const Equilibrium& state) const;
+
   /// The loading with the displacements that give its normal force.
   const Loading& loading() const { return loading_; }
 
@@ -145,6 +149,7 @@ class Statics {
   std::string mu_s_key_;
   MayContinue may_continue_;
   std::unique_ptr<PlateSolver> solver_;
+  solid::BlockRows pushed_rows_;       ///< of K
   TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;

@@ -43,7 +43,21 @@ def energy_rows(n: int = 6) -> list[list[float]]:
         friction, damping, top, coupling, landing = (a * share for a in (-90.0, -10.0, 0.8, 0.2, -1e-4))
         imbalance = 5e-10 if k > 0 else 0.0
         rows.append(
-            [250e-6 * share, strain, kinetic, 0, top, 0, 0, friction, landing, damping, 0, coupling, imbalance]
+            [
+                250e-6 * share,
+                strain,
+                kinetic,
+                0,
+                top,
+                0,
+                0,
+                friction,
+                landing,
+                damping,
+                0,
+                coupling,
+                imbalance,
+            ]
         )
     return rows
 

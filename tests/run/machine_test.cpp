@@ -60,6 +60,10 @@ TEST(SequenceOnAMachine, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
       EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), 1e-11 * largest);
       if (row.phase == LoadingPhase::slip_ends) continue;  // waves
       EXPECT_NEAR(row.normal_force_N_per_m, normal, 1e-10 * normal);
+      if (row.phase == LoadingPhase::tilted) continue;
+      EXPECT_TRUE(row.shear_height_m > 8e-3 && row.shear_height_m < 16e-3);
+      EXPECT_NEAR(row.pressure_moment_N - rows.front().pressure_moment_N,
+                  row.shear_force_N_per_m * row.shear_height_m, 1e-10 * normal * config.plate.width_m);
     }
     for (std::size_t k = 3; k < rows.size(); k += 3) {
       ASSERT_EQ(rows[k].phase, LoadingPhase::at_rest);
