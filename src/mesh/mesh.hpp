@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/numbers.hpp"
+
 namespace slipfront::mesh {
 
 /// A node's number among those that a mesh holds. In a whole that no mesh holds numbers may be larger, see
@@ -46,6 +48,9 @@ struct AbsorbingNode {
   /// the machine; 0, it bears a constant force; none, the machine has nothing to do with it.
   std::optional<double> grip_x_N_per_m = {}, grip_y_N_per_m = {};
 };
+inline bool is_spring(const std::optional<double>& grip_N_per_m) {
+  return grip_N_per_m && *grip_N_per_m != infinity;
+}
 
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
 ///
@@ -60,7 +65,7 @@ struct Mesh {
   std::vector<Cell> cells;
   std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
-  bool is_pushed = false;             ///< at its side; the loaded edge is held along y alone then
+  bool is_pushed = false;             ///< at its side; the machine holds the loaded edge along y alone then
   bool is_gripped = false;  ///< under shear `absorbing` says what holds the loaded edge and what is pushed
   std::vector<Node> pushed_nodes;  ///< those under the pusher, upwards; of columns that do not reach it none
   /// The loaded edge, where both its displacements are prescribed.

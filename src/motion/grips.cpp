@@ -4,28 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/numbers.hpp"
 #include "solid/element.hpp"
 
 namespace slipfront::motion {
 
 namespace {
 
-bool is_spring(const std::optional<double>& grip_N_per_m) {
-  return grip_N_per_m && *grip_N_per_m != infinity;
-}
-
 /// The nodes with springs, ascending.
 std::vector<mesh::AbsorbingNode> sprung_nodes(const mesh::Mesh& mesh) {
   std::vector<mesh::AbsorbingNode> nodes;
   for (const auto& a : mesh.absorbing)
-    if (is_spring(a.grip_x_N_per_m) || is_spring(a.grip_y_N_per_m)) nodes.push_back(a);
+    if (mesh::is_spring(a.grip_x_N_per_m) || mesh::is_spring(a.grip_y_N_per_m)) nodes.push_back(a);
   std::ranges::sort(nodes, {}, &mesh::AbsorbingNode::node);
   return nodes;
 }
 
 double stiffness_of(const std::optional<double>& grip_N_per_m) {
-  return is_spring(grip_N_per_m) ? *grip_N_per_m : 0;
+  return mesh::is_spring(grip_N_per_m) ? *grip_N_per_m : 0;
 }
 
 }  // namespace
@@ -33,8 +28,8 @@ double stiffness_of(const std::optional<double>& grip_N_per_m) {
 Grips::Grips(const mesh::Mesh& mesh, const solid::Material& material) {
   for (const auto& a : sprung_nodes(mesh)) {
     node_.push_back(a.node);
-    has_spring_.x.push_back(is_spring(a.grip_x_N_per_m));
-    has_spring_.y.push_back(is_spring(a.grip_y_N_per_m));
+    has_spring_.x.push_back(mesh::is_spring(a.grip_x_N_per_m));
+    has_spring_.y.push_back(mesh::is_spring(a.grip_y_N_per_m));
     stiffness_.x.push_back(stiffness_of(a.grip_x_N_per_m));
     stiffness_.y.push_back(stiffness_of(a.grip_y_N_per_m));
   }

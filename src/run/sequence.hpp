@@ -56,7 +56,7 @@ class Sequence {
   double time_s(double shear_m) const;
   /// Adds the row of an equilibrium after the last one.
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
-  /// What the tractions do not tell. Before its shear counts what the events have moved the plate.
+  /// What the tractions do not tell. @param state  as found: without what the events have moved the plate
   void add_state(const statics::Equilibrium& state, record::LoadingRow& row) const;
   /// With the works so far. @param shear_m  since the tilt
   record::LoadingRow row(record::LoadingPhase phase, double shear_m,

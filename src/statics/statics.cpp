@@ -464,21 +464,13 @@ void Statics::press_down(double compliance_m_per_Pa) {
   tilted_top_ = tilt;
 }
 
-namespace {
-
-bool is_spring(const std::optional<double>& grip_N_per_m) {
-  return grip_N_per_m && *grip_N_per_m != infinity;
-}
-
-}  // namespace
-
 solid::Field Statics::tilt_force_N(const solid::Material& material) const {
   std::vector<mesh::Node> nodes;
   solid::Field has_spring(mesh_.n_nodes());
   for (const auto& a : mesh_.absorbing) {
-    has_spring.x[a.node] = is_spring(a.grip_x_N_per_m);
-    has_spring.y[a.node] = is_spring(a.grip_y_N_per_m);
-    if (is_spring(a.grip_x_N_per_m) || is_spring(a.grip_y_N_per_m)) nodes.push_back(a.node);
+    has_spring.x[a.node] = mesh::is_spring(a.grip_x_N_per_m);
+    has_spring.y[a.node] = mesh::is_spring(a.grip_y_N_per_m);
+    if (mesh::is_spring(a.grip_x_N_per_m) || mesh::is_spring(a.grip_y_N_per_m)) nodes.push_back(a.node);
   }
   if (nodes.empty()) return {};
   solid::Field force_N(mesh_.n_nodes());
@@ -506,7 +498,7 @@ double Statics::machine_energy_J_per_m(const Equilibrium& state) const {
   double energy = 0;
   // By how much a spring is longer than in the tilted plate.
   const auto add = [&](const std::optional<double>& grip_N_per_m, double force_N, double stretch_m) {
-    if (is_spring(grip_N_per_m)) energy += (force_N + 0.5 * *grip_N_per_m * stretch_m) * stretch_m;
+    if (mesh::is_spring(grip_N_per_m)) energy += (force_N + 0.5 * *grip_N_per_m * stretch_m) * stretch_m;
   };
   const auto &u = state.u_m, &u_tilted = tilted_.u_m, &force_N = tilted_top_.tilt_force_N;
   if (force_N.size() == 0) return 0;

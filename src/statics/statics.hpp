@@ -115,8 +115,7 @@ class Statics {
   /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
   Equilibrium shear_to_force(double force_N_per_m) const;
 
-  /// Energy that the machine has stored since the tilt: in its springs, and by what its constant forces have
-  /// not done. In the equilibrium of an event that moved the plate as a whole the shear is less so much.
+  /// Energy in the machine's springs less the work of its constant forces, since the tilt.
   double machine_energy_J_per_m(const Equilibrium& state) const;
 
   /// Where the force along x acts on the plate: at the height of the loaded edge, or amid a pusher's forces;
