@@ -32,6 +32,7 @@ namespace steady_strip { Outcome verify(Effort effort); }
 namespace layer_spectrum { Outcome verify(Effort effort); }
 namespace impact { Outcome verify(Effort effort); }
 namespace block { Outcome verify(Effort effort); }
+namespace block_on_spring { Outcome verify(Effort effort); }
 namespace spring_slider { Outcome verify(Effort effort); }
 namespace velocity_steps { Outcome verify(Effort effort); }
 namespace recontact { Outcome verify(Effort effort); }

@@ -50,6 +50,7 @@ std::span<const Verification> verifications() {
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch::verify},
       Verification{"impact", "Impact of a free body on the plane", impact::verify},
       Verification{"block", "Stick-slip of a block", block::verify},
+      Verification{"block_on_spring", "A block that a soft machine pulls", block_on_spring::verify},
       Verification{"spring_slider", "A slider on a spring under rate-and-state friction",
                    spring_slider::verify},
       Verification{"velocity_steps", "Velocity steps and holds under rate-and-state friction",

@@ -39,7 +39,7 @@ EVENT_NAMES = {
     "friction_before": "shear over normal force where the event begins",
     "friction_after": "shear over normal force at rest",
     "stress_drop_Pa": "tangential traction before less that at rest, mean over what slips",
-    "released_J_per_m": "strain energy before less that at rest",
+    "released_J_per_m": "energy stored in bodies and machine before less that at rest",
     "friction_work_J_per_m": "energy that friction takes",
     "breakdown_work_J_per_m": "energy that friction takes above the residual traction",
     "wave_loss_J_per_m": "energy of the waves left at the end of the event",
@@ -57,6 +57,8 @@ LOADING_NAMES = {
     "shear_over_normal": "shear over normal force",
     "normal_force_x_m": "where along the interface the normal force acts",
     "fastest_slip_rate_m_per_s": "slip rate of the fastest node, of a law with a state",
+    "pressure_moment_N": "moment of the pressure about the middle of the interface",
+    "shear_height_m": "height at which the shear force acts on the plate",
     "wave_loss_J_per_m": "energy of the waves left at the ends of the events so far and radiated by slow slip",
 }
 

@@ -72,6 +72,7 @@ PROBE_FIELDS = (
 ENERGY_TERMS = (
     "strain",
     "kinetic",
+    "machine",
     "top_work",
     "trigger_work",
     "prestress_work",
@@ -540,8 +541,11 @@ def read_fields(file: Path) -> Fields:
 
 
 def read_balance(file: Path, growing: bool = False, blew_up: bool = False) -> Balance:
+    table = read_table(result_file(file), growing=growing)
     names = ("time_s", *(f"{term}_J_per_m" for term in ENERGY_TERMS), "imbalance_J_per_m")
-    columns = read_columns(file, names, growing, finite=not blew_up)
+    older = {"machine_J_per_m"} - set(table.header)  # results from before there were machines
+    columns = {name: table.numbers(name, finite=not blew_up) for name in names if name not in older}
+    columns |= {name: np.zeros(len(columns["time_s"])) for name in older}
     if blew_up:
         n = n_finite(*columns.values())
         columns = {name: values[:n] for name, values in columns.items()}

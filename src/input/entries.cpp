@@ -25,6 +25,9 @@ Range above_or_infinite(double min) {
 Range at_least(double min) {
   return {min, infinity, false, true};
 }
+Range at_least_or_infinite(double min) {
+  return {min, infinity, false, false};
+}
 Range between(double min, double max) {
   return {min, max, false, false};
 }
@@ -507,6 +510,18 @@ void add_pusher(Entries& all) {
       "x; nodes there do not move along x by themselves, and the pusher stays during an event; 0: none");
 }
 
+void add_machine(Entries& all) {
+  Table loading(
+      all, "loading", [](auto& config) -> auto& { return config.plate.machine; }, Stage::statics);
+  loading.only_with = direct();
+  loading.add("shear_stiffness_Pa", &mesh::Machine::shear_stiffness_Pa, above_or_infinite(0),
+              "stiffness of the loading machine along x, force per metre of thickness over displacement, in "
+              "series with the top edge or the pusher; inf: rigid");
+  loading.add("normal_stiffness_Pa", &mesh::Machine::normal_stiffness_Pa, at_least_or_infinite(0),
+              "the same downwards, on the top edge once it is tilted; 0: a dead load, inf: the edge stays at "
+              "its height");
+}
+
 void add_prestress(Entries& all) {
   Table prestress(all, "prestress", &Case::prestress, Stage::tractions);
   prestress.only_with = uniform();
@@ -737,6 +752,7 @@ Entries make_common_entries() {
   add_base(all);
   add_loading(all);
   add_pusher(all);
+  add_machine(all);
   add_prestress(all);
   add_friction(all);
   add_event(all);

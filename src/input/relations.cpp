@@ -386,6 +386,35 @@ void check_pusher(const Case& config) {
     throw UserError("{} > 0 needs {} = double", to, Key("time.precision"));
 }
 
+void check_machine(const Case& config) {
+  const auto& [shear_Pa, normal_Pa] = config.plate.machine;
+  if (config.plate.machine.is_rigid()) return;
+  // Beyond this a spring would set the time step: its frequency on a node of the edge that of the elements.
+  const double width_m = config.plate.width_m;
+  const double h_m = config.plate.element_size_m * std::pow(2, config.plate.coarsenings);
+  const double c_L = solid::longitudinal_speed_m_per_s(config.material);
+  const double of_elements_Pa = 2 * config.material.density_kg_per_m3 * c_L * c_L / h_m;
+  const auto& pusher = config.plate.pusher;
+  const auto require_soft = [&](const char* key, double stiffness_Pa, double length_m) {
+    const double most_Pa = of_elements_Pa * length_m;
+    if (stiffness_Pa != infinity && stiffness_Pa > most_Pa)
+      throw UserError(
+          "{} = {:g} Pa is stiffer than the elements that it moves, {:.3g} Pa; leave the key out for "
+          "a rigid machine",
+          Key(key), stiffness_Pa, most_Pa);
+  };
+  const char* const shear = "loading.shear_stiffness_Pa";
+  const char* const normal = "loading.normal_stiffness_Pa";
+  require_soft(shear, shear_Pa, pusher.is_there() ? pusher.to_m - pusher.from_m : width_m);
+  require_soft(normal, normal_Pa, width_m);
+  const Key key(shear_Pa != infinity ? shear : normal);
+  if (config.loading.solver == statics::StaticSolver::iterative)
+    throw UserError("{} is solved by a factorisation; choose {} = direct or auto", key,
+                    Key("loading.solver"));
+  if (config.time.precision == motion::Precision::single_precision)
+    throw UserError("{} needs {} = double", key, Key("time.precision"));
+}
+
 /// What makes the end of an event known, and the places at which its nodes have come to rest.
 void check_sequence(const Case& config) {
   if (!is_sequence(config)) return;
@@ -432,6 +461,7 @@ void check_relations(const Case& config, const Document& document) {
   check_trigger(config);
   check_sequence(config);
   check_pusher(config);
+  check_machine(config);
   check_nucleation(config);
   check_fronts(config.fronts, config.plate);
   check_snapshot_times(config.output.snapshot_times_s);

@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
+
+#include "base/numbers.hpp"
 
 namespace slipfront::mesh {
 
@@ -37,12 +40,17 @@ struct Grid {
 };
 
 /// A boundary node that lets waves out: length of its boundary with the normal along x, and along y; or that
-/// is held along one of them.
+/// the loading machine grips along one of them.
 struct AbsorbingNode {
   Node node = 0;
   double side_m = 0, top_m = 0;
-  bool holds_x = false, holds_y = false;
+  /// Stiffness, per unit thickness, of the spring between the machine and the node: infinite, it moves with
+  /// the machine; 0, it bears a constant force; none, the machine has nothing to do with it.
+  std::optional<double> grip_x_N_per_m = {}, grip_y_N_per_m = {};
 };
+inline bool is_spring(const std::optional<double>& grip_N_per_m) {
+  return grip_N_per_m && *grip_N_per_m != infinity;
+}
 
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
 ///
@@ -57,10 +65,11 @@ struct Mesh {
   std::vector<Cell> cells;
   std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
-  bool is_pushed = false;             ///< at its side; the loaded edge is held along y alone then
+  bool is_pushed = false;             ///< at its side; the machine holds the loaded edge along y alone then
+  bool is_gripped = false;  ///< under shear `absorbing` says what holds the loaded edge and what is pushed
   std::vector<Node> pushed_nodes;  ///< those under the pusher, upwards; of columns that do not reach it none
   /// The loaded edge, where both its displacements are prescribed.
-  std::vector<Node> driven_nodes() const { return is_pushed ? std::vector<Node>{} : far_edge_nodes; }
+  std::vector<Node> driven_nodes() const { return is_gripped ? std::vector<Node>{} : far_edge_nodes; }
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;

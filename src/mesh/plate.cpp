@@ -297,7 +297,7 @@ class Maker {
     name_interface_nodes();
     name_top();
     absorb();
-    hold();
+    grip();
     return std::move(mesh_);
   }
 
@@ -442,9 +442,34 @@ class Maker {
     }
   }
 
-  /// Nodes of a pushed plate that move along one direction alone.
-  void hold() {
+  /// What holds the nodes of the loaded edge and under the pusher, where that is not the same for all.
+  void grip() {
+    const auto& machine = plate_.machine;
     mesh_.is_pushed = plate_.pusher.is_there();
+    mesh_.is_gripped = mesh_.is_pushed || !machine.is_rigid();
+    if (!mesh_.is_gripped) return;
+    find_pushed_nodes();
+    const auto& pushed = mesh_.pushed_nodes;
+    for (std::size_t k = 0; k < pushed.size(); ++k) {
+      const auto y_m = [&](std::size_t j) { return mesh_.y_m[pushed[std::min(j, pushed.size() - 1)]]; };
+      const double length_m = y_m(k + 1) - y_m(k == 0 ? 0 : k - 1), all_m = y_m(pushed.size()) - y_m(0);
+      const double share = pushed.size() == 1 ? 1 : 0.5 * length_m / all_m;
+      mesh_.absorbing.push_back({.node = pushed[k], .grip_x_N_per_m = share * machine.shear_stiffness_Pa});
+    }
+    const auto& grid = blocks_.back().grid;
+    for (const Node n : mesh_.far_edge_nodes) {
+      const double x_m = mesh_.x_m[n], half_m = 0.5 * grid.spacing_m;
+      const bool is_end = !is_periodic_ && (x_m < half_m || x_m > plate_.width_m - half_m);
+      const double share = (is_end ? half_m : grid.spacing_m) / plate_.width_m;
+      const bool is_corner = !pushed.empty() && pushed.back() == n;
+      auto& node = is_corner ? mesh_.absorbing[pushed.size() - 1] : mesh_.absorbing.emplace_back();
+      node.node = n;
+      if (!mesh_.is_pushed) node.grip_x_N_per_m = share * machine.shear_stiffness_Pa;
+      node.grip_y_N_per_m = share * machine.normal_stiffness_Pa;
+    }
+  }
+
+  void find_pushed_nodes() {
     if (!mesh_.is_pushed) return;
     const double slack_m = 1e-9 * plate_.height_m;
     for (const auto& block : blocks_)
@@ -454,13 +479,7 @@ class Maker {
         if (mesh_.y_m[n] < plate_.pusher.from_m - slack_m || mesh_.y_m[n] > plate_.pusher.to_m + slack_m)
           continue;
         mesh_.pushed_nodes.push_back(n);
-        mesh_.absorbing.push_back({.node = n, .holds_x = true});
       }
-    for (const Node n : mesh_.far_edge_nodes) {
-      const bool is_corner = !mesh_.pushed_nodes.empty() && mesh_.pushed_nodes.back() == n;
-      if (is_corner) mesh_.absorbing[mesh_.pushed_nodes.size() - 1].holds_y = true;
-      if (!is_corner) mesh_.absorbing.push_back({.node = n, .holds_y = true});
-    }
   }
 
   const Plate& plate_;

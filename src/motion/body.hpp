@@ -124,8 +124,9 @@ class Body {
   void append_mean_velocity(std::vector<double> solid::Field::*component, mesh::Node first, mesh::Node end,
                             std::vector<double>& to) const;
 
-  /// Turns the motion round at the places `u_m`, see Stepper::reverse.
-  void reverse(const solid::Field& u_m, double time_s);
+  const Grips& grips() const { return motion_.grips; }
+  /// Turns the motion round at the places `u_m`, with the machine's forces there, see Stepper::reverse.
+  void reverse(const solid::Field& u_m, Grips grips, double time_s);
 
  private:
   template <class F>

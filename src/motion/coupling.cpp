@@ -224,7 +224,7 @@ void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, dou
     v_x[i] += sign * per_pressure * (loads_.prestress_t_Pa[i] + growth_t_Pa);
     v_y[i] -= per_pressure * (loads_.prestress_p_Pa[i] + growth_p_Pa);
   }
-  for (const auto& [i, n, d_x, d_y] : body.side->dashpots) {
+  for (const auto& [i, n, d_x, d_y, grip] : body.side->dashpots) {
     // The contact's tractions act on the effective mass m (1 + d).
     v_x[i] = (v_x[i] - d_x * v_x_before[i]) / (1 + d_x);
     v_y[i] = (v_y[i] - d_y * v_y_before[i]) / (1 + d_y);

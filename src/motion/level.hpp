@@ -11,6 +11,7 @@
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/damping_work.hpp"
+#include "motion/grips.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
 #include "solid/kernels.hpp"
@@ -30,6 +31,7 @@ struct BodyMotion {
   /// which owns all its nodes.
   std::vector<solid::Span> own;
   std::vector<bool> is_own;
+  Grips grips = {};
 
   bool is_owned(int row, solid::Span nodes) const {
     return own.empty() || (nodes.begin >= own[row].begin && nodes.begin < own[row].end);
@@ -47,11 +49,13 @@ struct NodeRun {
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body);
 
 /// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
-/// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c. Infinite: the node is held.
+/// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c. Infinite: the node keeps its
+/// velocity.
 struct Dashpot {
   std::size_t at = 0;  ///< row of the level, shared node, or interface node
   mesh::Node node = 0;
   double d_x = 0, d_y = 0;
+  std::size_t grip = Grips::none;  ///< place among the body's
 };
 
 /// Nodes of a level's cells that belong to finer cells, too, and move with the finer level's steps. Of the
@@ -189,10 +193,11 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
                        const TimeStepping& time, double step_s, std::span<const int> multiples,
                        const MaxOverSubdomains& largest = {});
 
-/// Velocity of a dashpot's node after a kick that alone would lead from `before` to `trial`; its work is
-/// added to `works`.
-solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, solid::Pair trial,
-                 record::Energies& works);
+/// Velocity of a dashpot's node at u_m after a kick that alone would lead from `before` to `trial`; the works
+/// of the dashpot and of what grips the node are added to `works`.
+/// @param step_s  with which it moves
+solid::Pair damp(const Dashpot& dashpot, Grips& grips, double step_s, double mass_kg, solid::Pair u_m,
+                 solid::Pair before, solid::Pair trial, record::Energies& works);
 
 /// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
 void set_motion_before(StepLevel& level, const BodyMotion& body);

@@ -52,6 +52,7 @@ struct PlainBody {
   std::vector<bool> is_in_contact, is_loaded;
   std::vector<PlainLevel> levels;  ///< coarsest first
   std::vector<Dashpot> dashpots;   ///< of absorbing nodes not in contact, with d = 0 for all others
+  Grips grips;
   InterfaceSide side;
   /// What the contact moves.
   ContactBody contact() { return {&side, &u_m, &v_m_per_s}; }
@@ -112,8 +113,8 @@ inline void move(PlainBody& body, const PlainLevel& level) {
     const double kick_x = dt * body.load_m_per_s2.x[n] + body.impulse_m_per_s.x[n];
     const double kick_y = dt * body.load_m_per_s2.y[n] + body.impulse_m_per_s.y[n];
     body.impulse_m_per_s.x[n] = body.impulse_m_per_s.y[n] = 0;
-    const auto after = damp(body.dashpots[n], body.mass_kg[n], {v_last.x[n], v_last.y[n]},
-                            {v.x[n] + kick_x, v.y[n] + kick_y}, body.works);
+    const auto after = damp(body.dashpots[n], body.grips, dt, body.mass_kg[n], {u.x[n], u.y[n]},
+                            {v_last.x[n], v_last.y[n]}, {v.x[n] + kick_x, v.y[n] + kick_y}, body.works);
     body.works.coupling_work +=
         0.5 * body.mass_kg[n] * (kick_x * (after.x + v_last.x[n]) + kick_y * (after.y + v_last.y[n]));
     v.x[n] = v_last.x[n] = after.x;

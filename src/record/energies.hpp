@@ -16,6 +16,7 @@ namespace slipfront::record {
 struct Energies {
   double time_s = 0;
   double kinetic = 0, strain = 0;
+  double machine = 0;  ///< in its springs, and of constant forces what they can still do; since the start
   double top_work = 0;
   double trigger_work = 0;
   double prestress_work = 0;
@@ -43,10 +44,14 @@ struct EnergyTerm : Column<Energies, double> {
 inline constexpr Column<Energies, double> energy_time = {"time_s", "s", "time since the start of the event",
                                                          &Energies::time_s};
 /// All terms, in the order of the files.
-inline constexpr std::array<EnergyTerm, 10> energy_terms = {{
+inline constexpr std::array<EnergyTerm, 11> energy_terms = {{
     {{"strain_J_per_m", "J/m", "strain energy", &Energies::strain}, EnergyKind::stored},
     {{"kinetic_J_per_m", "J/m", "kinetic energy", &Energies::kinetic}, EnergyKind::stored},
-    {{"top_work_J_per_m", "J/m", "work of the moving top edge", &Energies::top_work}, EnergyKind::work},
+    {{"machine_J_per_m", "J/m",
+      "energy in the springs of the loading machine, less the work of constant forces", &Energies::machine},
+     EnergyKind::stored},
+    {{"top_work_J_per_m", "J/m", "work of the moving top edge or machine", &Energies::top_work},
+     EnergyKind::work},
     {{"trigger_work_J_per_m", "J/m", "work of the trigger's forces", &Energies::trigger_work},
      EnergyKind::work},
     {{"prestress_work_J_per_m", "J/m", "work of the prescribed tractions", &Energies::prestress_work},

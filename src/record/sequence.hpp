@@ -36,6 +36,8 @@ struct LoadingRow {
   double shear_over_normal = 0;
   double normal_force_x_m = 0;
   double fastest_slip_rate_m_per_s = 0;
+  double pressure_moment_N = 0;
+  double shear_height_m = nan;
   /// What is stored, and works since the tilt; between static equilibria those of the mean forces.
   Energies energies;
   double wave_loss_J_per_m = 0;
@@ -43,13 +45,14 @@ struct LoadingRow {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(phase, n_events, time_s, shear_m, normal_force_N_per_m, shear_force_N_per_m, shear_over_normal,
-            normal_force_x_m, fastest_slip_rate_m_per_s, energies, wave_loss_J_per_m);
+            normal_force_x_m, fastest_slip_rate_m_per_s, pressure_moment_N, shear_height_m, energies,
+            wave_loss_J_per_m);
   }
 };
 
 /// The columns of a row but for its phase, its events and the terms of its energies, which come before the
 /// last one.
-inline constexpr std::array<Column<LoadingRow, double>, 7> loading_fields = {{
+inline constexpr std::array<Column<LoadingRow, double>, 9> loading_fields = {{
     {"time_s", "s", "time since the tilt, in which the top edge moves at its speed", &LoadingRow::time_s},
     {"shear_m", "m", "displacement of the top edge or the pusher to +x since the tilt", &LoadingRow::shear_m},
     {"normal_force_N_per_m", "N/m", "sum of the pressure over the interface",
@@ -61,6 +64,10 @@ inline constexpr std::array<Column<LoadingRow, double>, 7> loading_fields = {{
      &LoadingRow::normal_force_x_m},
     {"fastest_slip_rate_m_per_s", "m/s", "slip rate of the fastest node, of a law with a state; else 0",
      &LoadingRow::fastest_slip_rate_m_per_s},
+    {"pressure_moment_N", "N", "moment of the pressure about the middle of the interface, N m per m",
+     &LoadingRow::pressure_moment_N},
+    {"shear_height_m", "m", "height at which the shear force acts on the plate; of equilibria under load",
+     &LoadingRow::shear_height_m},
 }};
 inline constexpr Column<LoadingRow, double> wave_loss = {
     "wave_loss_J_per_m", "J/m",
@@ -115,7 +122,8 @@ inline constexpr std::array<Column<SequenceEvent, double>, 25> sequence_event_fi
     {"friction_after", "1", "that at rest", &SequenceEvent::friction_after},
     {"stress_drop_Pa", "Pa", "tangential traction before less that at rest, mean over what slips",
      &SequenceEvent::stress_drop_Pa},
-    {"released_J_per_m", "J/m", "strain energy before less that at rest", &SequenceEvent::released_J_per_m},
+    {"released_J_per_m", "J/m", "energy stored in bodies and machine before less that at rest",
+     &SequenceEvent::released_J_per_m},
     {"friction_work_J_per_m", "J/m", "energy that friction takes", &SequenceEvent::friction_work_J_per_m},
     {"breakdown_work_J_per_m", "J/m", "that above the residual traction: fracture energy times area",
      &SequenceEvent::breakdown_work_J_per_m},

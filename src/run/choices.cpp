@@ -72,7 +72,8 @@ double advised_damping_s(const input::Case& config) {
 }
 
 statics::StaticSolver wanted_solver(const input::Case& config) {
-  if (config.plate.pusher.is_there() || input::is_slow(config)) return statics::StaticSolver::direct;
+  if (config.plate.pusher.is_there() || !config.plate.machine.is_rigid() || input::is_slow(config))
+    return statics::StaticSolver::direct;
   const auto shape = [](const mesh::Plate& plate) {
     return statics::Shape{std::round(plate.width_m / plate.element_size_m),
                           std::round(plate.height_m / plate.element_size_m), plate.coarsenings > 0};

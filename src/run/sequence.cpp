@@ -75,17 +75,18 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
   else if (has_fracture_energy(config))
     predictor_.emplace(config);
   loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
-  loading_.back().energies.strain = strain_energy_J_per_m(at_rest_);
+  add_state(at_rest_, loading_.back());
 }
 
 double Sequence::time_s(double shear_m) const {
   return shear_m / top_speed_m_per_s(config_);
 }
 
-double Sequence::strain_energy_J_per_m(const statics::Equilibrium& state) const {
-  double energy = solid::strain_energy_J_per_m(plate_, state.u_m);
-  if (base_) energy += solid::strain_energy_J_per_m(*base_, state.below_u_m);
-  return energy;
+void Sequence::add_state(const statics::Equilibrium& state, LoadingRow& row) const {
+  row.energies.strain = solid::strain_energy_J_per_m(plate_, state.u_m);
+  if (base_) row.energies.strain += solid::strain_energy_J_per_m(*base_, state.below_u_m);
+  row.energies.machine = statics_.machine_energy_J_per_m(state);
+  row.shear_height_m = statics_.shear_height_m(state);
 }
 
 LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
@@ -110,6 +111,8 @@ LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::Stati
   row.shear_force_N_per_m = shear;
   row.shear_over_normal = shear / normal;
   row.normal_force_x_m = moment / normal;
+  row.pressure_moment_N = moment - normal * 0.5 * (tractions.x_m.front() + tractions.x_m.back());
+  row.shear_height_m = nan;
   return row;
 }
 
@@ -125,7 +128,7 @@ std::string Sequence::end() const {
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
   auto loaded = row(phase, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
-  loaded.energies.strain = strain_energy_J_per_m(state);
+  add_state(state, loaded);
   loading_.push_back(loaded);
 }
 
@@ -219,7 +222,7 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
   now.energies = from.energies;
   now.energies.time_s = now.time_s;
   now.energies.kinetic = 0;
-  now.energies.strain = strain_energy_J_per_m(equilibrium);
+  add_state(equilibrium, now);
   now.energies.top_work += works.of_load_J_per_m;
   now.energies.friction_work += works.of_friction_J_per_m;
   now.energies.contact_work += works.of_contact_J_per_m;
@@ -298,7 +301,9 @@ void Sequence::take(const Result& result) {
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
   ends.energies.kinetic = last.kinetic;
+  ends.energies.machine = begins.energies.machine + last.machine - first.machine;
   ends.energies.strain = begins.energies.stored() + last.stored() - first.stored() - last.kinetic;
+  ends.energies.strain -= ends.energies.machine;
   add_event_works(last, ends.energies);
   loading_.push_back(ends);
 
@@ -307,7 +312,7 @@ void Sequence::take(const Result& result) {
     for (const auto& onset : event.record.onsets) held_.rests_since_s[onset.node] = time_s(shear_m);
   rest();
   auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
-  rests.energies.strain = strain_energy_J_per_m(at_rest_);
+  add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
   loading_.push_back(rests);
   add_event(result, begins, rests, at_rest_.tractions);

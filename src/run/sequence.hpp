@@ -82,7 +82,8 @@ class Sequence {
   double time_s(double shear_m) const;
   /// Adds the row of an equilibrium after the last one.
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
-  double strain_energy_J_per_m(const statics::Equilibrium& state) const;
+  /// What the tractions do not tell. @param state  as found: without what the events have moved the plate
+  void add_state(const statics::Equilibrium& state, record::LoadingRow& row) const;
   /// With the works so far. @param shear_m  since the tilt
   record::LoadingRow row(record::LoadingPhase phase, double shear_m,
                          const record::StaticState& tractions) const;

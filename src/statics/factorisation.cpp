@@ -9,6 +9,7 @@
 #include "base/budget.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/numbers.hpp"
 #include "solid/element.hpp"
 #include "statics/dissection.hpp"
 
@@ -34,7 +35,9 @@ std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
 
 Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top)
     : mesh_(mesh), top_(top) {
-  if (top == TopConstraint::vertical) spring_ = material.youngs_modulus_Pa;
+  set_grips();
+  for (const std::size_t c : {0, 1})
+    if (!is_held_along(c)) spring_[c] = material.youngs_modulus_Pa;
   try {
     factorise(material);
   } catch (const std::bad_alloc&) {
@@ -44,10 +47,27 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   near_top_ = solid::assemble_rows(mesh, material, nodes_near_top(mesh));
 }
 
+void Factorisation::set_grips() {
+  grip_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), 0);
+  for (const auto n : mesh_.far_edge_nodes) {
+    if (top_ == TopConstraint::both) grip_[2 * n] = infinity;
+    if (top_ != TopConstraint::gripped) grip_[2 * n + 1] = infinity;
+  }
+  if (top_ != TopConstraint::gripped) return;
+  for (const auto& a : mesh_.absorbing) {
+    grip_[2 * a.node] = a.grip_x_N_per_m.value_or(0);
+    grip_[2 * a.node + 1] = a.grip_y_N_per_m.value_or(0);
+  }
+}
+
+bool Factorisation::is_held_along(std::size_t c) const {
+  for (std::size_t k = c; k < grip_.size(); k += 2)
+    if (grip_[k] == infinity) return true;
+  return false;
+}
+
 std::vector<std::int32_t> Factorisation::number_unknowns() {
   SLIPFRONT_ASSERT(mesh_.n_nodes() < std::numeric_limits<std::int32_t>::max() / 2, "too many unknowns");
-  const auto is_loaded = mesh::marked(mesh_, mesh_.far_edge_nodes);
-  const auto is_pushed = mesh::marked(mesh_, mesh_.pushed_nodes);
   const auto order = dissect(mesh_, mesh_.interface_nodes);
   unknown_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), -1);
   std::vector<std::int32_t> block_ends;
@@ -55,11 +75,8 @@ std::vector<std::int32_t> Factorisation::number_unknowns() {
   for (const auto end : order.block_ends) {
     for (; k < end; ++k) {
       const auto n = order.nodes[k];
-      const bool is_held_along_x = top_ == TopConstraint::both     ? is_loaded[n]
-                                   : top_ == TopConstraint::pushed ? is_pushed[n]
-                                                                   : false;
-      if (!is_held_along_x) unknown_[2 * n] = n_unknowns_++;
-      if (!is_loaded[n]) unknown_[2 * n + 1] = n_unknowns_++;
+      for (const auto u : {2 * n, 2 * n + 1})
+        if (grip_[u] != infinity) unknown_[u] = n_unknowns_++;
     }
     block_ends.push_back(n_unknowns_);
   }
@@ -77,7 +94,9 @@ void Factorisation::factorise(const solid::Material& material) {
                   {"the fronts of the factorisation", factor_->front_bytes(), smaller}},
                  fmt::format("the factorisation of {} static unknowns", n_unknowns_));
 
-  solid::CellStiffness K{};
+  // A grip's spring counts to the first cell of its node that is asked for.
+  auto left = grip_;
+  solid::CellStiffness K{}, K_with_springs{};
   solid::CellCoordinates shape_of_K{};
   const auto stiffness_of = [&](std::size_t cell) -> const solid::CellStiffness& {
     auto c = solid::cell_coordinates(mesh_, mesh_.cells[cell]);
@@ -86,10 +105,22 @@ void Factorisation::factorise(const solid::Material& material) {
       K = solid::cell_stiffness(c, material);
       shape_of_K = c;
     }
-    return K;
+    const auto spring_of = [&](std::size_t a) -> double& {
+      return left[2 * mesh_.cells[cell][a / 2] + a % 2];
+    };
+    bool has_springs = false;
+    for (std::size_t a = 0; a < 8; ++a) {
+      double& spring = spring_of(a);
+      if (spring == 0 || spring == infinity) continue;
+      if (!has_springs) K_with_springs = K;
+      has_springs = true;
+      K_with_springs[8 * a + a] += spring;
+      spring = 0;
+    }
+    return has_springs ? K_with_springs : K;
   };
   Eigen::VectorXd springs = Eigen::VectorXd::Zero(2 * mesh_.interface_nodes.size());
-  for (Eigen::Index k = 0; k < springs.size(); k += 2) springs(k) = spring_;
+  for (Eigen::Index k = 0; k < springs.size(); ++k) springs(k) = spring_[k % 2];
   auto condensed = factor_->factorise(stiffness_of, springs);
   SLIPFRONT_ASSERT(condensed, "stiffness is not positive definite");
   condensed_ = std::move(*condensed);
@@ -109,18 +140,18 @@ Factorisation::Load Factorisation::load(const TopDisplacement& top) const {
   const Eigen::VectorXd u_i =
       at_interface(solve(top, Eigen::VectorXd::Zero(2 * mesh_.interface_nodes.size())));
   Eigen::VectorXd g = condensed_ * u_i;
-  for (Eigen::Index k = 0; k < g.size(); k += 2) g(k) += spring_ * u_i(k);
+  for (Eigen::Index k = 0; k < g.size(); ++k) g(k) += spring_[k % 2] * u_i(k);
   return {top, g};
 }
 
 solid::Field Factorisation::displacement(const Load& load, const Eigen::VectorXd& interface_u_m) const {
   Eigen::VectorXd force = condensed_ * interface_u_m - load.g_N;
-  for (Eigen::Index k = 0; k < force.size(); k += 2) force(k) += spring_ * interface_u_m(k);
+  for (Eigen::Index k = 0; k < force.size(); ++k) force(k) += spring_[k % 2] * interface_u_m(k);
   return solve(load.top, force);
 }
 
 solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_N) const {
-  SLIPFRONT_ASSERT(top_ != TopConstraint::vertical, "forces on a plate that nothing holds along x");
+  SLIPFRONT_ASSERT(spring_[0] == 0 && spring_[1] == 0, "forces on a plate that nothing holds");
   return solve(unit_motion(mesh_, top_, EdgeMotion::none), interface_force_N);
 }
 
@@ -129,13 +160,21 @@ solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::Vecto
       top.u_x_m.size() == mesh_.far_edge_nodes.size() && top.u_y_m.size() == mesh_.far_edge_nodes.size(),
       "size of the loaded edge");
   solid::Field u(mesh_.n_nodes());
-  for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
-    if (top_ == TopConstraint::both) u.x[mesh_.far_edge_nodes[k]] = top.u_x_m[k];
-    u.y[mesh_.far_edge_nodes[k]] = top.u_y_m[k];
-  }
-  for (std::size_t k = 0; top_ == TopConstraint::pushed && k < mesh_.pushed_nodes.size(); ++k)
-    u.x[mesh_.pushed_nodes[k]] = top.pushed_u_x_m[k];
   std::vector<double> f(n_unknowns_);
+  const auto hold = [&](std::vector<double> solid::Field::*component, mesh::Node n, double u_m) {
+    const auto at = 2 * n + (component == &solid::Field::y ? 1 : 0);
+    if (grip_[at] == infinity) (u.*component)[n] = u_m;
+    if (grip_[at] == infinity || top_ != TopConstraint::gripped) return;
+    f[unknown_[at]] += grip_[at] * u_m;
+    if (top.tilt_force_N.size() > 0) f[unknown_[at]] += (top.tilt_force_N.*component)[n];
+  };
+  for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
+    if (!mesh_.is_pushed || top_ != TopConstraint::gripped)
+      hold(&solid::Field::x, mesh_.far_edge_nodes[k], top.u_x_m[k]);
+    hold(&solid::Field::y, mesh_.far_edge_nodes[k], top.u_y_m[k]);
+  }
+  for (std::size_t k = 0; top_ == TopConstraint::gripped && k < mesh_.pushed_nodes.size(); ++k)
+    hold(&solid::Field::x, mesh_.pushed_nodes[k], top.pushed_u_x_m[k]);
   solid::for_each_row_product(near_top_, u, [&](std::size_t r, double x, double y) {
     const auto n = near_top_.node[r];
     if (unknown_[2 * n] >= 0) f[unknown_[2 * n]] -= x;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,11 +18,12 @@ namespace slipfront::statics {
 
 /// The plate's stiffness factorised once, with the interface condensed.
 ///
-/// The unknowns are all displacements that are not prescribed on the loaded edge; the interface is free. They
-/// are numbered by nested dissection with the interface last: what the elimination of all others leaves of
-/// its block is its condensed stiffness S. The forces of the plane on the
-/// interface nodes are then f = S u_i - g, with u_i their displacements and g the load that the loaded edge
-/// sends to the interface. Contact states change on this small dense system without another factorisation.
+/// The unknowns are all displacements that are not prescribed on the loaded edge, springs of a machine count
+/// as stiffness of its nodes; the interface is free. They are numbered by nested dissection with the
+/// interface last: what the elimination of all others leaves of its block is its condensed stiffness S. The
+/// forces of the plane on the interface nodes are then f = S u_i - g, with u_i their displacements and g the
+/// load that the loaded edge sends to the interface. Contact states change on this small dense system without
+/// another factorisation.
 ///
 /// Vectors over the interface hold x and y of each node of mesh.interface_nodes in turn. Forces are per unit
 /// thickness.
@@ -52,15 +54,20 @@ class Factorisation {
  private:
   /// In the order of dissection, the interface last. @return the number behind the last unknown of each block
   std::vector<std::int32_t> number_unknowns();
+  void set_grips();
+  /// Whether a displacement along x, or y, is prescribed anywhere.
+  bool is_held_along(std::size_t component) const;
   void factorise(const solid::Material& material);
   solid::Field solve(const TopDisplacement& top, const Eigen::VectorXd& interface_force) const;
   Eigen::VectorXd at_interface(const solid::Field& u) const;
 
   const mesh::Mesh& mesh_;
   TopConstraint top_;
-  /// Springs along x under the interface nodes, N/m, that keep the factorised matrix definite where nothing
-  /// else holds the plate along x. S is without them.
-  double spring_ = 0;
+  /// Stiffness of what holds the loaded edge and what is pushed; infinite: prescribed. [2 nodes], N/m
+  std::vector<double> grip_;
+  /// Springs along x and y under the interface nodes, N/m, that keep the factorised matrix definite where
+  /// nothing rigid holds the plate. S is without them.
+  std::array<double, 2> spring_ = {0, 0};
   solid::BlockRows near_top_;          ///< K rows of the loaded edge's nodes and their neighbours
   std::vector<std::int32_t> unknown_;  ///< [2 nodes] index of the unknown, -1 where prescribed or an orphan
   Eigen::MatrixXd condensed_;

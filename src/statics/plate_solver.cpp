@@ -103,7 +103,7 @@ class DirectSolver : public PlateSolver {
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, EdgeMotion motion,
                                       const DisplacementOfBodies*, int) override {
     auto interface = held_;
-    if (constraint == TopConstraint::vertical)
+    if (constraint != constraint_under_shear(mesh_))
       interface = std::make_shared<CondensedInterface>(
           std::make_shared<Factorisation>(mesh_, material_, constraint), base_);
     return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top,
@@ -164,7 +164,7 @@ void TopDisplacement::add(double share, const TopDisplacement& more) {
 
 TopDisplacement unit_motion(const mesh::Mesh& mesh, TopConstraint constraint, EdgeMotion motion) {
   const std::size_t n = mesh.far_edge_nodes.size();
-  const bool is_along_x = motion == EdgeMotion::along_x, is_pushed = constraint == TopConstraint::pushed;
+  const bool is_along_x = motion == EdgeMotion::along_x, is_pushed = mesh.is_pushed;
   return {std::vector<double>(n, is_along_x && !is_pushed ? 1.0 : 0.0),
           std::vector<double>(n, motion == EdgeMotion::down ? -1.0 : 0.0),
           std::vector<double>(is_pushed ? mesh.pushed_nodes.size() : 0, is_along_x ? 1.0 : 0.0)};
@@ -206,7 +206,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
-  if (mesh.is_pushed || choose_solver(solver, n_unknowns) == StaticSolver::direct)
+  if (mesh.is_gripped || choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);
 }

@@ -17,12 +17,12 @@ namespace slipfront::statics {
 /// Contact state of an interface node at rest.
 enum class Contact : std::uint8_t { stick, slip, open };
 
-/// Which displacements of the loaded edge are prescribed; pushed: the vertical ones, and those along x of the
+/// Which displacements of the loaded edge are prescribed; gripped: what mesh.absorbing says of it, and of the
 /// nodes under the pusher.
-enum class TopConstraint { both, vertical, pushed };
+enum class TopConstraint { both, vertical, gripped };
 /// What holds a plate that is sheared.
 inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
-  return mesh.is_pushed ? TopConstraint::pushed : TopConstraint::both;
+  return mesh.is_gripped ? TopConstraint::gripped : TopConstraint::both;
 }
 
 /// How the loaded edge, or what is pushed, moves on from its prescribed displacements, by a length that
@@ -30,9 +30,11 @@ inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
 enum class EdgeMotion : std::uint8_t { none, along_x, down };
 
 /// Prescribed displacements of the loaded edge, in the order of mesh.far_edge_nodes (u_x is ignored where
-/// only the vertical is prescribed), and of mesh.pushed_nodes, where they are.
+/// only the vertical is prescribed), and of mesh.pushed_nodes, where they are; with a machine's spring in
+/// between, those at which it bears its force of the tilt.
 struct TopDisplacement {
   std::vector<double> u_x_m, u_y_m, pushed_u_x_m = {};
+  solid::Field tilt_force_N = {};  ///< of springs [nodes]; empty: none
 
   void add(double share, const TopDisplacement& more);
 };

@@ -397,6 +397,11 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.interface_nodes.size(), "mu_s of another interface");
   solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
   press_down(height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0));
+  tilted_top_.tilt_force_N = tilt_force_N(plate_body.material);
+  pushed_rows_ = solid::assemble_rows(mesh, plate_body.material, mesh.pushed_nodes);
+  const auto tilted_u = displacement_of(tilted_);
+  sheared_ =
+      solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 void Statics::press_down(double compliance_m_per_Pa) {
@@ -459,9 +464,51 @@ void Statics::press_down(double compliance_m_per_Pa) {
       tilt.u_x_m[k] = tilted_.u_m.x[mesh.far_edge_nodes[k]];
   for (const auto n : mesh.pushed_nodes) tilt.pushed_u_x_m.push_back(tilted_.u_m.x[n]);
   tilted_top_ = tilt;
-  const auto tilted_u = displacement_of(tilted_);
-  sheared_ =
-      solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
+}
+
+solid::Field Statics::tilt_force_N(const solid::Material& material) const {
+  std::vector<mesh::Node> nodes;
+  solid::Field has_spring(mesh_.n_nodes());
+  for (const auto& a : mesh_.absorbing) {
+    has_spring.x[a.node] = mesh::is_spring(a.grip_x_N_per_m);
+    has_spring.y[a.node] = mesh::is_spring(a.grip_y_N_per_m);
+    if (mesh::is_spring(a.grip_x_N_per_m) || mesh::is_spring(a.grip_y_N_per_m)) nodes.push_back(a.node);
+  }
+  if (nodes.empty()) return {};
+  solid::Field force_N(mesh_.n_nodes());
+  const auto rows = solid::assemble_rows(mesh_, material, nodes);
+  solid::for_each_row_product(rows, tilted_.u_m, [&](std::size_t r, double x, double y) {
+    const auto n = rows.node[r];
+    force_N.x[n] = has_spring.x[n] * x;
+    force_N.y[n] = has_spring.y[n] * y;
+  });
+  return force_N;
+}
+
+double Statics::shear_height_m(const Equilibrium& state) const {
+  if (!mesh_.is_pushed) return mesh_.y_m[mesh_.far_edge_nodes.front()];
+  if (state.shear_m == 0) return nan;
+  double force_N = 0, moment_N_m = 0;
+  solid::for_each_row_product(pushed_rows_, state.u_m, [&](std::size_t r, double x, double /*y*/) {
+    force_N += x;
+    moment_N_m += x * mesh_.y_m[pushed_rows_.node[r]];
+  });
+  return moment_N_m / force_N;
+}
+
+double Statics::machine_energy_J_per_m(const Equilibrium& state) const {
+  double energy = 0;
+  // By how much a spring is longer than in the tilted plate.
+  const auto add = [&](const std::optional<double>& grip_N_per_m, double force_N, double stretch_m) {
+    if (mesh::is_spring(grip_N_per_m)) energy += (force_N + 0.5 * *grip_N_per_m * stretch_m) * stretch_m;
+  };
+  const auto &u = state.u_m, &u_tilted = tilted_.u_m, &force_N = tilted_top_.tilt_force_N;
+  if (force_N.size() == 0) return 0;
+  for (const auto& [n, side_m, top_m, grip_x, grip_y] : mesh_.absorbing) {
+    add(grip_x, force_N.x[n], state.shear_m - (u.x[n] - u_tilted.x[n]));
+    add(grip_y, force_N.y[n], -(u.y[n] - u_tilted.y[n]));
+  }
+  return energy;
 }
 
 Statics::~Statics() = default;

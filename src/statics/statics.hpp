@@ -35,7 +35,7 @@ struct Equilibrium {
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
   /// The same of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
-  double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
+  double shear_m = 0;  ///< displacement of what loads along x since the tilt: the edge, or the machine
   std::vector<Contact> contact;               ///< [interface nodes]
   record::StaticState tractions;              ///< [interface nodes]
   double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside
@@ -132,6 +132,13 @@ class Statics {
   /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
   Equilibrium shear_to_force(double force_N_per_m) const;
 
+  /// Energy in the machine's springs less the work of its constant forces, since the tilt.
+  double machine_energy_J_per_m(const Equilibrium& state) const;
+
+  /// Where the force along x acts on the plate: at the height of the loaded edge, or amid a pusher's forces;
+  /// nan where that does not push.
+  double shear_height_m(const Equilibrium& state) const;
+
   /// The loading with the displacements that give its normal force.
   const Loading& loading() const { return loading_; }
 
@@ -143,6 +150,8 @@ class Statics {
   void press_down(double compliance_m_per_Pa);
   template <class Problem>
   Equilibrium equilibrium(const Problem& problem, double shear_m) const;
+  /// What the machine's springs bear in the tilted plate.
+  solid::Field tilt_force_N(const solid::Material& material) const;
   /// @param sticks_inside  slip there is none, but of a guess
   template <class FindShear>
   Equilibrium shear(FindShear&& find_shear, bool sticks_inside) const;
@@ -158,6 +167,7 @@ class Statics {
   std::string mu_s_key_;
   MayContinue may_continue_;
   std::unique_ptr<PlateSolver> solver_;
+  solid::BlockRows pushed_rows_;       ///< of K
   TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;

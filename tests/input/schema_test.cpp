@@ -56,9 +56,10 @@ auto members(const Struct& s) {
   }
 }
 auto members(const mesh::Plate& plate) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, pusher] = plate;
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, pusher, machine] = plate;
   const auto& [from_m, to_m] = pusher;
-  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l, from_m, to_m);
+  const auto& [shear_Pa, normal_Pa] = machine;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l, from_m, to_m, shear_Pa, normal_Pa);
 }
 auto members(const Base& base) {
   const auto& [kind, plate, material] = base;
@@ -269,6 +270,27 @@ TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
   EXPECT_THAT(parse_error(pusher + "loading.solver = 'iterative'"), HasSubstr("loading.solver = direct"));
   EXPECT_THAT(parse_error(pusher + "time.precision = 'single'"), HasSubstr("time.precision = double"));
   EXPECT_THAT(parse_error(pusher + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
+}
+
+TEST(Schema, MachinesReadBackFromToml) {
+  Case on_machine;
+  on_machine.plate.machine = {2e9, 0};
+  expect_equal(parsed(to_toml(on_machine)), on_machine);
+  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").plate.machine.is_rigid());
+}
+
+TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {
+  const std::string soft = "loading.shear_stiffness_Pa = 1e9\n", dead = "loading.normal_stiffness_Pa = 0\n";
+  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa = 0"), HasSubstr("greater than 0"));
+  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa = -1"), HasSubstr("at least 0"));
+  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa = 1e14"), HasSubstr("for a rigid machine"));
+  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa = 1e14"), HasSubstr("for a rigid machine"));
+  for (const auto& machine : {soft, dead}) {
+    EXPECT_THAT(parse_error(machine + "loading.solver = 'iterative'"), HasSubstr("loading.solver = direct"));
+    EXPECT_THAT(parse_error(machine + "time.precision = 'single'"), HasSubstr("time.precision = double"));
+    EXPECT_THAT(parse_error(machine + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
+    EXPECT_THAT(parse_error(machine + "loading.method = 'prestress'"), HasSubstr("loading.method = direct"));
+  }
 }
 
 TEST(Schema, DefaultsOfASequenceLetEventsComeToRestBeforeTheEdgeMovesOn) {
@@ -508,14 +530,16 @@ TEST(Schema, AnIntegerDoesForANumber) {
             (std::vector<double>{0, 1.5, 2}));
 }
 
-TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesInfinite) {
+TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesAndRigidMachinesInfinite) {
   std::vector<std::string> may_be_infinite;
   for (const Entry& entry : entries_of(Case{})) {
     if (entry.kind != Kind::number) continue;
     expect_message(parse_error(entry.key + " = nan"), "", "is nan");
     if (parse_error(entry.key + " = inf") == "(nothing thrown)") may_be_infinite.push_back(entry.key);
   }
-  EXPECT_EQ(may_be_infinite, (std::vector<std::string>{"time.quiet_s", "output.snapshot_interval_s"}));
+  EXPECT_EQ(may_be_infinite,
+            (std::vector<std::string>{"loading.shear_stiffness_Pa", "loading.normal_stiffness_Pa",
+                                      "time.quiet_s", "output.snapshot_interval_s"}));
 }
 
 // What is refused is in relations_test.

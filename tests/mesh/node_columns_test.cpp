@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -151,10 +152,14 @@ void expect_columns(const Plate& plate, const Subset& held) {
   };
   expect_some(part.interface_nodes, whole.interface_nodes);
   expect_some(part.far_edge_nodes, whole.far_edge_nodes);
-  std::vector<std::tuple<Node, double, double>> absorbing, expected_absorbing;
-  for (const auto& a : part.absorbing) absorbing.emplace_back(in_whole(a.node), a.side_m, a.top_m);
+  expect_some(part.pushed_nodes, whole.pushed_nodes);
+  using Grip = std::optional<double>;
+  std::vector<std::tuple<Node, double, double, Grip, Grip>> absorbing, expected_absorbing;
+  for (const auto& a : part.absorbing)
+    absorbing.emplace_back(in_whole(a.node), a.side_m, a.top_m, a.grip_x_N_per_m, a.grip_y_N_per_m);
   for (const auto& a : whole.absorbing)
-    if (is_held(a.node)) expected_absorbing.emplace_back(a.node, a.side_m, a.top_m);
+    if (is_held(a.node))
+      expected_absorbing.emplace_back(a.node, a.side_m, a.top_m, a.grip_x_N_per_m, a.grip_y_N_per_m);
   EXPECT_EQ(absorbing, expected_absorbing);
   const bool has_both_sides = held.has(0) && held.has(of_whole.n_columns() - 1);
   EXPECT_EQ(part.period_m, has_both_sides ? whole.period_m : 0);
@@ -187,6 +192,8 @@ TEST(MakeColumns, MakesTheNodesThereAndTheCellsBetweenThem) {
     some.fillet_radius_m = 4e-3;
     some.fine_height_m = 8e-3;
     if (form.coarsenings == 2) some.height_m = 0.06;
+    some.machine = {2e9, 1e9};
+    if (form.sides == Sides::free && form.corner != Corner::fillet) some.pusher = {2e-3, 0.02};
     // Cuts anywhere, within units of transitions, too.
     for (const auto& range : {Span{0, 25}, {9, 33}, {18, form.columns + 1}, {15, 34}})
       expect_columns(some, Subset({range}));

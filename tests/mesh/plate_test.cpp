@@ -157,6 +157,30 @@ TEST(Plate, AbsorbsAlongItsWholeTop) {
   }
 }
 
+TEST(Plate, SharesTheStiffnessOfItsMachineAmongTheNodes) {
+  for (const bool is_pushed : {false, true}) {
+    Plate plate{.width_m = 0.04, .height_m = 0.02, .element_size_m = 1e-3, .coarsenings = 1};
+    plate.fine_height_m = 6e-3;
+    plate.machine = {3e9, 5e9};
+    if (is_pushed) plate.pusher = {2e-3, plate.height_m};
+    const auto mesh = make_plate(plate);
+    EXPECT_TRUE(mesh.is_gripped);
+    EXPECT_TRUE(mesh.driven_nodes().empty());
+    double x_N_per_m = 0, y_N_per_m = 0;
+    std::size_t n_x = 0, n_y = 0;
+    for (const auto& a : mesh.absorbing) {
+      x_N_per_m += a.grip_x_N_per_m.value_or(0);
+      y_N_per_m += a.grip_y_N_per_m.value_or(0);
+      n_x += a.grip_x_N_per_m.has_value();
+      n_y += a.grip_y_N_per_m.has_value();
+    }
+    EXPECT_NEAR(x_N_per_m, 3e9, 3e9 * 100 * eps);
+    EXPECT_NEAR(y_N_per_m, 5e9, 5e9 * 100 * eps);
+    EXPECT_EQ(n_x, is_pushed ? mesh.pushed_nodes.size() : mesh.far_edge_nodes.size());
+    EXPECT_EQ(n_y, mesh.far_edge_nodes.size());
+  }
+}
+
 TEST(MinSide, OfAHandMadeCell) {
   Mesh mesh;  // its upper side is the shortest
   mesh.x_m = {0, 2, 1, 0};

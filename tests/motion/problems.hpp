@@ -160,6 +160,15 @@ inline void repeating_alone(Problem& p) {
 inline void pushed(Problem& p) {
   p.plate.pusher = {1e-3, 20e-3};
 }
+/// By springs in all that a machine may hold.
+inline void gripped(Problem& p) {
+  p.plate.machine = {1e12, 2e11};
+  p.is_strained = true;
+}
+inline void under_dead_load(Problem& p) {
+  p.plate.machine.normal_stiffness_Pa = 0;
+  p.is_strained = true;
+}
 /// Nodes around an onset: five parts have 40 columns each.
 inline constexpr int beyond_a_part = 60;
 
@@ -176,6 +185,9 @@ inline const Variant variants[] = {
     {"Fillet", [](Problem& p) { p.plate.corner = mesh::Corner::fillet; }},
     {"AbsorbingEdges", between_absorbing_edges},
     {"Pushed", pushed},  // in sub-cycled rows and above
+    {"Gripped", gripped},
+    {"UnderDeadLoad", under_dead_load},
+    {"PushedBySpring", [](Problem& p) { pushed(p), gripped(p); }},
     {"Repeating", repeating, {2, 3, 4}},
     {"TwoBodies", [](Problem& p) { p.below = &gel, p.contact.algorithm = predictor_corrector; }},
     {"LowOnLow", [](Problem& p) { of_heights(p, 7e-3, 6e-3); }, {2}},
@@ -200,6 +212,8 @@ inline const Variant variants[] = {
     {"GradedHalfUnits",
      [](Problem& p) { p = graded(), p.plate.width_m = 0.204, between_absorbing_edges(p); }},
     {"GradedPushed", [](Problem& p) { p = graded(), pushed(p); }},
+    {"GradedGripped", [](Problem& p) { p = graded(), gripped(p); }},
+    {"GradedPushedBySpring", [](Problem& p) { p = graded(), pushed(p), gripped(p), under_dead_load(p); }},
     {"GradedRepeating", [](Problem& p) { graded_bodies(p, gel, 2, 2), repeating(p); }, {2, 3, 4}},
     {"GradedSingle", [](Problem& p) { p = graded(), p.plate.height_m = 0.1, p.time.precision = single; }},
     {"EvenOnGradedOneStep",

@@ -28,9 +28,9 @@ FRONTS_HEADER = [
 
 
 ENERGY_HEADER = [
-    "time_s", "strain_J_per_m", "kinetic_J_per_m", "top_work_J_per_m", "trigger_work_J_per_m",
-    "prestress_work_J_per_m", "friction_work_J_per_m", "contact_work_J_per_m", "damping_work_J_per_m",
-    "boundary_work_J_per_m", "coupling_work_J_per_m", "imbalance_J_per_m",
+    "time_s", "strain_J_per_m", "kinetic_J_per_m", "machine_J_per_m", "top_work_J_per_m",
+    "trigger_work_J_per_m", "prestress_work_J_per_m", "friction_work_J_per_m", "contact_work_J_per_m",
+    "damping_work_J_per_m", "boundary_work_J_per_m", "coupling_work_J_per_m", "imbalance_J_per_m",
 ]  # fmt: skip
 
 
@@ -43,7 +43,21 @@ def energy_rows(n: int = 6) -> list[list[float]]:
         friction, damping, top, coupling, landing = (a * share for a in (-90.0, -10.0, 0.8, 0.2, -1e-4))
         imbalance = 5e-10 if k > 0 else 0.0
         rows.append(
-            [250e-6 * share, strain, kinetic, top, 0, 0, friction, landing, damping, 0, coupling, imbalance]
+            [
+                250e-6 * share,
+                strain,
+                kinetic,
+                0,
+                top,
+                0,
+                0,
+                friction,
+                landing,
+                damping,
+                0,
+                coupling,
+                imbalance,
+            ]
         )
     return rows
 

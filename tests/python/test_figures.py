@@ -462,7 +462,7 @@ def test_balance_shows_the_terms_as_changes(results, drawn):
     figure = drawn["energy_balance"].figure
     rows = np.array(energy_rows())
     n = len(results.runs)
-    large = {"strain": 1, "friction_work": 6, "damping_work": 8}
+    large = {"strain": 1, "friction_work": 7, "damping_work": 9}
     # The small ones over the largest, 101 J/m; terms that do not occur are left out.
     small = {"kinetic": 2.0, "top_work": 0.8, "contact_work": 1e-4, "coupling_work": 0.2, "imbalance": 5e-10}
     for panel, name in enumerate(results.runs):
@@ -475,6 +475,16 @@ def test_balance_shows_the_terms_as_changes(results, drawn):
         for term, last in small.items():
             share = artist(figure, f"{name}:{term}", n + panel).get_ydata()
             assert np.isnan(share[0]) and share[-1] == pytest.approx(last / 101, rel=1e-4)
+
+
+def test_balance_of_results_from_before_there_were_machines(output):
+    machine = ENERGY_HEADER.index("machine_J_per_m")
+    header, *rows = ([*row[:machine], *row[machine + 1 :]] for row in [ENERGY_HEADER, *energy_rows()])
+    before = read_results(output).runs["left"].balance
+    write_csv(output / "left" / "energy.csv", header, rows)
+    now = read_results(output).runs["left"].balance
+    for term, values in before.terms.items():
+        np.testing.assert_array_equal(now.terms[term], values)
 
 
 def test_caption_of_the_balance_has_the_imbalance_of_the_worst_row(output, drawn):
@@ -492,7 +502,7 @@ def test_caption_of_the_balance_has_the_imbalance_of_the_worst_row(output, drawn
 def test_single_run_has_its_balance(output, capsys, still):
     run = output / "left"
     if still:
-        write_csv(run / "energy.csv", ENERGY_HEADER, [[0] * 12, [1e-6] + [0] * 11])
+        write_csv(run / "energy.csv", ENERGY_HEADER, [[0] * 13, [1e-6] + [0] * 12])
     assert main([str(run)]) == 0
     assert {file.name for file in (run / "figures").iterdir()} == {"energy_balance.png", "energy_balance.pdf"}
     assert (run / "figures/energy_balance.pdf").read_bytes()[:5] == b"%PDF-"

@@ -551,6 +551,8 @@ to_global_sliding = true
 [loading]
 pusher_from_m = 8e-3
 pusher_to_m = 16e-3
+shear_stiffness_Pa = 1e9
+normal_stiffness_Pa = 0.0
 """,
 }
 

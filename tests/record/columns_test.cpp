@@ -65,10 +65,10 @@ TEST(Energies, TheTableNamesEveryMemberOnce) {
   }
 }
 
-TEST(Energies, OnlyStrainAndMotionAreStored) {
+TEST(Energies, StrainMotionAndTheMachineAreStored) {
   const auto e = powers_of_two();
-  EXPECT_EQ(e.stored(), e.strain + e.kinetic);
-  EXPECT_EQ(e.work(), 1023 - e.stored());
+  EXPECT_EQ(e.stored(), e.strain + e.kinetic + e.machine);
+  EXPECT_EQ(e.work(), 2047 - e.stored());
 }
 
 TEST(Energies, TermsAreAddedAndTheTimeStays) {

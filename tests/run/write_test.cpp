@@ -96,15 +96,15 @@ TEST_F(WrittenRun, TablesHoldWhatWasComputed) {
   ASSERT_GT(energies.size(), 3U);
   std::vector<std::vector<double>> rows;
   for (const auto& e : energies)
-    rows.push_back({e.time_s, e.strain, e.kinetic, e.top_work, e.trigger_work, e.prestress_work,
+    rows.push_back({e.time_s, e.strain, e.kinetic, e.machine, e.top_work, e.trigger_work, e.prestress_work,
                     e.friction_work, e.contact_work, e.damping_work, e.boundary_work, e.coupling_work,
                     e.stored() - energies[0].stored() - e.work()});
-  expect_table(
-      s.folder / "energy.csv",
-      "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,prestress_work_J_per_m,"
-      "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
-      "coupling_work_J_per_m,imbalance_J_per_m",
-      rows);
+  expect_table(s.folder / "energy.csv",
+               "time_s,strain_J_per_m,kinetic_J_per_m,machine_J_per_m,top_work_J_per_m,trigger_work_J_per_m,"
+               "prestress_work_J_per_m,"
+               "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
+               "coupling_work_J_per_m,imbalance_J_per_m",
+               rows);
 
   rows.clear();
   const auto& state = s.initial.common.tractions;

@@ -20,6 +20,7 @@ SMALL = 0.02  # a term that never exceeds this share of the largest is drawn bel
 TERMS: dict[str, tuple[str, str, style.Line]] = {
     "strain": ("strain energy", "#000000", "-"),
     "kinetic": ("kinetic energy", "#0072b2", "-"),
+    "machine": ("loading machine", "#882255", (0, (7, 1.5, 1, 1.5))),
     "friction_work": ("friction", "#d55e00", (0, (5, 1.5))),
     "damping_work": ("damping", "#009e73", (0, (7, 1.5, 1, 1.5, 1, 1.5))),
     "trigger_work": ("trigger", "#882255", (0, (1, 1.2))),

@@ -195,7 +195,7 @@ def panels(fronts: list[dict[str, Any]]) -> list[str]:
 
 def given_to_the_rest(balance: Balance) -> dict[str, np.ndarray]:
     """What each term gives to all others since the start, J/m; the sum is minus the imbalance."""
-    stored = ("strain", "kinetic")
+    stored = ("strain", "kinetic", "machine")
     return {term: -values if term in stored else values for term, values in balance.terms.items()}
 
 

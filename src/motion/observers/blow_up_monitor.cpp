@@ -34,7 +34,7 @@ constexpr double balance_tolerance = 1e-6;
 double supplied_J_per_m(const record::Energies& now, const record::Energies& start) {
   // Of a plate at rest rounding may leave less than nothing.
   return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
-         std::abs(now.prestress_work);
+         std::abs(now.prestress_work) + std::max(0.0, -now.machine);
 }
 
 /// What of the case gives the plate most of its energy.

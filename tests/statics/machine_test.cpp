@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "statics/equilibria.hpp"
+
+namespace slipfront::statics {
+namespace {
+
+constexpr double rigid = infinity;
+
+struct Sample {
+  const char* name;
+  double shear_Pa, normal_Pa;
+  bool is_pushed = false;
+  int coarsenings = 0;
+};
+
+const Sample samples[] = {{"Springs", 2e9, 5e9},
+                          {"DeadLoad", rigid, 0},
+                          {"DeadLoadOnSpring", 3e8, 0},
+                          {"Vertical", rigid, 1e10},
+                          {"Along", 1e10, rigid},
+                          {"PushedBySpring", 5e8, rigid, true},
+                          {"PushedUnderDeadLoad", rigid, 0, true},
+                          {"PushedBySpringUnderSpring", 5e8, 1e10, true},
+                          {"GradedPushed", 5e8, 0, true, 1}};
+
+mesh::Plate plate_of(const Sample& sample) {
+  mesh::Plate plate{.width_m = 0.08, .height_m = 0.04, .element_size_m = 2e-3, .corner = mesh::Corner::none};
+  plate.coarsenings = sample.coarsenings;
+  if (sample.is_pushed) plate.pusher = {4e-3, 20e-3};
+  plate.machine = {sample.shear_Pa, sample.normal_Pa};
+  return plate;
+}
+
+Loading loading() {
+  Loading loading{.tilt_left_m = 3e-5, .tilt_right_m = 5e-5};
+  loading.edge_margin_m = 6e-3;
+  return loading;
+}
+
+/// Length of an edge that belongs to its nodes.
+template <class At>
+std::vector<double> lengths_m(const std::vector<mesh::Node>& nodes, At&& at_m) {
+  std::vector<double> all(nodes.size(), 0);
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
+    for (const auto end : {k, k + 1}) all[end] += 0.5 * (at_m(nodes[k + 1]) - at_m(nodes[k]));
+  return all;
+}
+
+class AMachine : public ::testing::TestWithParam<Sample> {
+ protected:
+  mesh::Mesh mesh_ = mesh::make_plate(plate_of(GetParam()));
+  solid::Material material_;
+  Statics statics_{mesh_, material_, loading(), 0.5};
+
+  Eigen::VectorXd forces(const Equilibrium& e) const {
+    return test::assembled_stiffness(mesh_, material_) * test::flat(e.u_m);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Samples, AMachine, ::testing::ValuesIn(samples),
+                         [](const auto& sample) { return sample.param.name; });
+
+TEST_P(AMachine, PullsEachNodeByItsShareOfTheSprings) {
+  const auto& [name, shear_Pa, normal_Pa, is_pushed, coarsenings] = GetParam();
+  const auto& tilted = statics_.tilted();
+  const auto e = statics_.shear_to(0.98);
+  const Eigen::VectorXd before = forces(tilted);
+  Eigen::VectorXd now = forces(e);
+  const double tolerance_N = 1e-10 * now.cwiseAbs().maxCoeff();
+  const auto expect_grip = [&](Eigen::Index d, double k_N_per_m, double machine_m) {
+    const double moved_m = test::flat(e.u_m)(d) - test::flat(tilted.u_m)(d);
+    if (k_N_per_m == rigid)
+      EXPECT_NEAR(moved_m, machine_m, 1e-12 * e.shear_m) << d;
+    else
+      EXPECT_NEAR(now(d), before(d) + k_N_per_m * (machine_m - moved_m), tolerance_N) << d;
+  };
+  const auto& top = mesh_.far_edge_nodes;
+  const auto of_top_m = lengths_m(top, [&](mesh::Node n) { return mesh_.x_m[n]; });
+  for (std::size_t k = 0; k < top.size(); ++k) {
+    expect_grip(2 * top[k] + 1, of_top_m[k] / 0.08 * normal_Pa, 0);
+    now(2 * top[k] + 1) = 0;
+    if (is_pushed) continue;
+    expect_grip(2 * top[k], of_top_m[k] / 0.08 * shear_Pa, e.shear_m);
+    now(2 * top[k]) = 0;
+  }
+  const auto& pushed = mesh_.pushed_nodes;
+  ASSERT_EQ(pushed.size() > 3, is_pushed);
+  const auto of_pushed_m = lengths_m(pushed, [&](mesh::Node n) { return mesh_.y_m[n]; });
+  for (std::size_t k = 0; k < pushed.size(); ++k) {
+    const double all_m = mesh_.y_m[pushed.back()] - mesh_.y_m[pushed.front()];
+    expect_grip(2 * pushed[k], of_pushed_m[k] / all_m * shear_Pa, e.shear_m);
+    now(2 * pushed[k]) = 0;
+  }
+  const auto tributary_m = mesh::tributary_lengths_m(mesh_);
+  for (std::size_t k = 0; k < tributary_m.size(); ++k) {
+    const auto n = mesh_.interface_nodes[k];
+    EXPECT_NEAR(now(2 * n), -e.tractions.t_s_Pa[k] * tributary_m[k], tolerance_N);
+    EXPECT_NEAR(now(2 * n + 1), e.tractions.p_s_Pa[k] * tributary_m[k], tolerance_N);
+    now.segment<2>(2 * n).setZero();
+  }
+  EXPECT_LE(now.cwiseAbs().maxCoeff(), tolerance_N);
+}
+
+TEST_P(AMachine, UnderAConstantForceTheInterfaceBearsIt) {
+  const auto tributary_m = mesh::tributary_lengths_m(mesh_);
+  const auto force = [&](const Equilibrium& e) { return contact_force(e, tributary_m).normal_N_per_m; };
+  const double before = force(statics_.tilted()), now = force(statics_.shear_to(0.98));
+  if (GetParam().normal_Pa == 0)
+    EXPECT_NEAR(now, before, 1e-11 * before);
+  else
+    EXPECT_GT(std::abs(now - before), 1e-4 * before);
+}
+
+TEST_P(AMachine, DoesTheWorkThatPlateAndMachineStore) {
+  const auto op = solid::make_operator(mesh_, material_);
+  const auto stored = [&](const Equilibrium& e) {
+    return solid::strain_energy_J_per_m(op, e.u_m) + statics_.machine_energy_J_per_m(e);
+  };
+  const auto a = statics_.shear_to(0.5), b = statics_.shear_to(0.9);
+  const auto tributary_m = mesh::tributary_lengths_m(mesh_);
+  double work = 0.5 * (b.shear_m - a.shear_m) *
+                (contact_force(a, tributary_m).shear_N_per_m + contact_force(b, tributary_m).shear_N_per_m);
+  for (std::size_t k = 0; k < tributary_m.size(); ++k) {
+    const auto n = mesh_.interface_nodes[k];
+    const double half_m = 0.5 * tributary_m[k];
+    work -= half_m * (a.tractions.t_s_Pa[k] + b.tractions.t_s_Pa[k]) * (b.u_m.x[n] - a.u_m.x[n]);
+    work += half_m * (a.tractions.p_s_Pa[k] + b.tractions.p_s_Pa[k]) * (b.u_m.y[n] - a.u_m.y[n]);
+  }
+  EXPECT_GT(work, 1e-4 * stored(a));
+  EXPECT_NEAR(stored(b) - stored(a), work, 1e-11 * std::max(stored(a), stored(b)));
+  EXPECT_EQ(statics_.machine_energy_J_per_m(statics_.tilted()), 0);
+}
+
+TEST_P(AMachine, MovesThePlateAsItsDisplacementGrows) {
+  expect_slope_of_displacement(statics_, 0.9, 1e-10);
+}
+
+TEST(Machine, PullsAStiffBlockByItsOwnStiffnessAlone) {
+  const solid::Material stiff{.youngs_modulus_Pa = 1e16};
+  auto plate = plate_of(samples[0]);
+  plate.machine = {3e9, rigid};
+  const auto mesh = mesh::make_plate(plate);
+  auto pressed = loading();
+  pressed.tilt_left_m = pressed.tilt_right_m = 1e-12;
+  const Statics statics(mesh, stiff, pressed, 0.5);
+  const auto tributary_m = mesh::tributary_lengths_m(mesh);
+  const auto e = statics.shear_by(1e-6);
+  EXPECT_NEAR(contact_force(e, tributary_m).shear_N_per_m, 3e9 * 1e-6, 1e-5 * 3e3);
+}
+
+TEST(Machine, BecomesRigidAsItsStiffnessGrows) {
+  auto plate = plate_of(samples[0]);
+  const auto shear_at = [&](double stiffness_Pa) {
+    plate.machine = {stiffness_Pa, stiffness_Pa};
+    const auto mesh = mesh::make_plate(plate);
+    return Statics(mesh, {}, loading(), 0.5).shear_to(0.98).shear_m;
+  };
+  const double at_rigid_m = shear_at(rigid);
+  const double off = shear_at(1e13) - at_rigid_m, less_off = shear_at(1e14) - at_rigid_m;
+  EXPECT_GT(less_off, 1e-6 * at_rigid_m);
+  EXPECT_NEAR(off / less_off, 10, 0.1);
+}
+
+TEST(Machine, KeepsTheForceOfABodyOnABase) {
+  const auto mesh = mesh::make_plate(plate_of(samples[2]));
+  auto below = plate_of(samples[2]);
+  below.machine = {};
+  const auto base = mesh::make_plate(below);
+  const Statics statics({mesh, pmma}, ElasticBody{base, gel}, loading(),
+                        std::vector<double>(mesh.interface_nodes.size(), 0.5));
+  const auto tributary_m = mesh::tributary_lengths_m(mesh);
+  const auto force = [&](const Equilibrium& e) { return contact_force(e, tributary_m); };
+  const auto e = statics.shear_to(0.98);
+  const double before = force(statics.tilted()).normal_N_per_m;
+  EXPECT_NEAR(force(e).normal_N_per_m, before, 1e-10 * before);
+  EXPECT_GT(force(e).shear_N_per_m, 0.01 * before);
+}
+
+}  // namespace
+}  // namespace slipfront::statics
