@@ -152,7 +152,7 @@ solid::Field Factorisation::displacement(const Load& load, const Eigen::VectorXd
 
 solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_N) const {
   SLIPFRONT_ASSERT(spring_[0] == 0 && spring_[1] == 0, "forces on a plate that nothing holds");
-  return solve(unit_motion(mesh_, top_, EdgeMotion::none), interface_force_N);
+  return solve(unit_motion(mesh_, EdgeMotion::none), interface_force_N);
 }
 
 solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::VectorXd& interface_force) const {

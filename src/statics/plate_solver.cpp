@@ -106,12 +106,11 @@ class DirectSolver : public PlateSolver {
     if (constraint != constraint_under_shear(mesh_))
       interface = std::make_shared<CondensedInterface>(
           std::make_shared<Factorisation>(mesh_, material_, constraint), base_);
-    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top,
-                                               unit_motion(mesh_, constraint, motion));
+    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top, unit_motion(mesh_, motion));
   }
   std::unique_ptr<SlidingInterface> sliding(const TopDisplacement& top,
                                             const std::vector<Contact>& contact) const override {
-    const auto unit = unit_motion(mesh_, constraint_under_shear(mesh_), EdgeMotion::along_x);
+    const auto unit = unit_motion(mesh_, EdgeMotion::along_x);
     return held_->sliding(held_->load(top), held_->load(unit), gap_m_, mesh::tributary_lengths_m(mesh_),
                           contact);
   }
@@ -162,7 +161,7 @@ void TopDisplacement::add(double share, const TopDisplacement& more) {
     for (std::size_t k = 0; k < (this->*of).size(); ++k) (this->*of)[k] += share * (more.*of)[k];
 }
 
-TopDisplacement unit_motion(const mesh::Mesh& mesh, TopConstraint constraint, EdgeMotion motion) {
+TopDisplacement unit_motion(const mesh::Mesh& mesh, EdgeMotion motion) {
   const std::size_t n = mesh.far_edge_nodes.size();
   const bool is_along_x = motion == EdgeMotion::along_x, is_pushed = mesh.is_pushed;
   return {std::vector<double>(n, is_along_x && !is_pushed ? 1.0 : 0.0),

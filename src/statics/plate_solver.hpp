@@ -39,7 +39,7 @@ struct TopDisplacement {
   void add(double share, const TopDisplacement& more);
 };
 /// Moved on by 1 m.
-TopDisplacement unit_motion(const mesh::Mesh& mesh, TopConstraint constraint, EdgeMotion motion);
+TopDisplacement unit_motion(const mesh::Mesh& mesh, EdgeMotion motion);
 
 /// What the contact does to each node of mesh.interface_nodes: u_y = -gap unless open, u_x = anchor where it
 /// sticks, f_x = -slip_sign mu_s f_y where it slips. u is the displacement relative to the rigid plane, or to

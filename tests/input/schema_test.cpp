@@ -93,7 +93,7 @@ auto members(const Case& c) {
   return std::tuple(title, members(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x), tip,
                     members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
-                    members<3>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
+                    members<6>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
                     members<4>(probes));
 }
 
@@ -248,8 +248,22 @@ TEST(Schema, SequencesReadBackFromToml) {
   sequence.loading.shear_speed_over_c_L = 1e-8;
   sequence.time.end_s = 1e-2;
   sequence.time.quiet_s = 1e-3;
-  sequence.sequence = {7, 400, true};
+  sequence.sequence = {7, 400, true, 0.02, 3, {}};
   expect_equal(parsed(to_toml(sequence)), sequence);
+  sequence.friction = interface::RateAndStateAging {};
+  sequence.sequence = {7, 400, true, 0, 1, 2e-3};
+  expect_equal(parsed(to_toml(sequence)), sequence);
+}
+
+TEST(Schema, SlowSlipBetweenEventsNeedsAFactorisationAndAPressure) {
+  const std::string slow = "friction.law = \"rate_and_state_aging\"\nsequence.max_events = 2\n";
+  EXPECT_TRUE(is_slow(parsed(slow + "friction.theta_i_s = 10")));
+  EXPECT_THAT(parse_error(slow + "loading.solver = \"iterative\""), HasSubstr("condense the interface"));
+  EXPECT_THAT(parse_error(slow + "friction.regularisation = \"initial_pressure\""),
+              HasSubstr("no pressure to slow slip"));
+  EXPECT_THAT(parse_error(slow + "sequence.healing_per_e_fold = 0.1"), HasSubstr("with mu_s"));
+  EXPECT_THAT(parse_error("sequence.max_events = 2\nsequence.inertia_slip_rate_m_per_s = 0.1"),
+              HasSubstr("with a state"));
 }
 
 TEST(Schema, PushersReadBackFromToml) {

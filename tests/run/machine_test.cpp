@@ -67,7 +67,9 @@ TEST(SequenceOnAMachine, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
     }
     for (std::size_t k = 3; k < rows.size(); k += 3) {
       ASSERT_EQ(rows[k].phase, LoadingPhase::at_rest);
-      if (substeps == 1) EXPECT_GT(rows[k].wave_loss_J_per_m, rows[k - 1].wave_loss_J_per_m);
+      if (substeps == 1) {
+        EXPECT_GT(rows[k].wave_loss_J_per_m, rows[k - 1].wave_loss_J_per_m);
+      }
       EXPECT_LT(rows[k].energies.machine, rows[k - 2].energies.machine);  // the spring shortens in an event
     }
     // All of the shear force comes through the spring.
@@ -91,9 +93,11 @@ TEST(SequenceOnAMachine, OfATopEdgeKeepsItsBooks) {
 TEST(SequenceOnAMachine, IsTheSameWhereverItWasStopped) {
   const test::TemporaryFolder folder;
   const auto config = pushed_block(2);
+  SessionOptions options;
+  options.threads = 1;
   const auto start = [&](const fs::path& dir, const SessionHooks& hooks) {
     results::ResultFolder place(dir, run_work);
-    run_sequence_into(place, config, {.threads = 1}, hooks, [](std::size_t, const record::SequenceEvent&) {});
+    run_sequence_into(place, config, options, hooks, [](std::size_t, const record::SequenceEvent&) {});
   };
   start(folder / "whole", test::undisturbed);
   for (const auto& [part, step] : {std::pair{"event 1", 100}, {"event 2", 150}}) {
@@ -101,7 +105,7 @@ TEST(SequenceOnAMachine, IsTheSameWhereverItWasStopped) {
     EXPECT_THROW(start(dir, stopping_at(part, step)), Interrupted);
     {
       results::ResultFolder place(dir, run_work);
-      resume_sequence(place, nullptr, {.threads = 1}, test::undisturbed,
+      resume_sequence(place, nullptr, options, test::undisturbed,
                       [](std::size_t, const record::SequenceEvent&) {});
     }
     for (const char* file :
