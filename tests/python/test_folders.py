@@ -271,7 +271,8 @@ def test_a_blown_up_run_is_shown_as_far_as_it_has_numbers(run):
     unfinished = interrupt(run, "blew_up")
     with h5py.File(unfinished / "interface.h5", "r+") as hdf5:
         hdf5["slip_rate_m_per_s"][-2, 3] = np.nan
-    write_csv(unfinished / "energy.csv", ENERGY_HEADER, [*energy_rows(), [1.0, "inf", *["nan"] * 10]])
+    blown_up = [1.0, "inf", *["nan"] * (len(ENERGY_HEADER) - 2)]
+    write_csv(unfinished / "energy.csv", ENERGY_HEADER, [*energy_rows(), blown_up])
     now = read_run(run)
     assert len(now.history.time_s) == 9 and len(now.balance.time_s) == 6
     set_status(unfinished, "interrupted", "")

@@ -548,11 +548,21 @@ event.kind = "spontaneous"
 max_events = 3
 end_s = 500.0
 to_global_sliding = true
+healing_per_e_fold = 0.01
+healing_time_s = 2.0
 [loading]
 pusher_from_m = 8e-3
 pusher_to_m = 16e-3
 shear_stiffness_Pa = 1e9
 normal_stiffness_Pa = 0.0
+""",
+    "slow": """
+plate.element_size_m = 4e-3
+event.kind = "spontaneous"
+friction.law = "rate_and_state_aging"
+[sequence]
+max_events = 2
+inertia_slip_rate_m_per_s = 1e-3
 """,
 }
 
