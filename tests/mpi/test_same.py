@@ -238,9 +238,23 @@ interface_rows = 2
 
 
 PUSHER = "[loading]\npusher_from_m = 8e-3\npusher_to_m = 20e-3\n"  # of rank 0's columns alone
+MACHINE = PUSHER + "shear_stiffness_Pa = 1e9\nnormal_stiffness_Pa = 0.0\n"
+# Event 1 of a law with a state, which slow slip leads to.
+SLOW = """
+[material]
+stiffness_damping_s = 2e-6
+[loading]
+mean_pressure_Pa = 5e6
+[friction]
+law = "rate_and_state_aging"
+a = 0.01
+b = 0.02
+d_c_m = 1e-6
+V_i_m_per_s = 1e-6
+"""
 
 
-@pytest.mark.parametrize("loading", ["", PUSHER])
+@pytest.mark.parametrize("loading", ["", PUSHER, MACHINE, SLOW])
 def test_a_sequence_of_several_processes(tmp_path, mpirun, loading):
     """The first event is the same; energies to rounding, from which the next one grows apart."""
     (tmp_path / "case.toml").write_text(SEQUENCE + loading)
