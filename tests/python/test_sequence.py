@@ -33,6 +33,35 @@ kind = "spontaneous"
 [sequence]
 max_events = {N_EVENTS}
 """
+# Slow slip and two events in a second.
+STICK_SLIP = """\
+title = "coarse stick-slip"
+
+[plate]
+width_m = 0.1
+height_m = 0.05
+element_size_m = 2e-3
+corner = "none"
+
+[material]
+stiffness_damping_s = 1e-6
+
+[loading]
+mean_pressure_Pa = 5e6
+
+[friction]
+law = "rate_and_state_aging"
+a = 0.010
+b = 0.015
+d_c_m = 0.5e-6
+V_i_m_per_s = 1e-6
+
+[event]
+kind = "spontaneous"
+
+[sequence]
+max_events = 2
+"""
 TABLES = ("case.resolved.toml", "events.csv", "loading.csv")
 RUN_TABLES = ("interface.h5", "fronts.csv", "fracture.csv", "energy.csv", "static.csv")
 STORED = ("strain", "kinetic")
@@ -42,6 +71,13 @@ STORED = ("strain", "kinetic")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("sequence")
     require_done(program("run", write_case(place, SEQUENCE), "-q", "-o", "out", cwd=place))
+    return place / "out"
+
+
+@pytest.fixture(scope="module")
+def stick_slip(tmp_path_factory):
+    place = tmp_path_factory.mktemp("stick_slip")
+    require_done(program("run", write_case(place, STICK_SLIP), "-q", "-o", "out", cwd=place))
     return place / "out"
 
 
@@ -184,8 +220,9 @@ def test_runs_are_the_events(folder):
         assert slip.max() == event["max_slip_m"]
 
 
-def test_the_energies_balance(folder):
-    loading = slipfront.open(folder).loading
+@pytest.mark.parametrize("which", ["folder", "stick_slip"])
+def test_the_energies_balance(which, request):
+    loading = slipfront.open(request.getfixturevalue(which)).loading
     terms = {term: loading[f"{term}_J_per_m"].to_numpy() for term in ENERGY_TERMS}
     change = sum(terms[term] - terms[term][0] for term in STORED)
     works = sum(values for term, values in terms.items() if term not in STORED)
@@ -206,6 +243,83 @@ def test_what_an_event_releases_is_what_the_loading_loses(folder):
     np.testing.assert_allclose(strain["event_begins"] - strain["at_rest"], released, rtol=1e-9)
     losses = sequence.events["wave_loss_J_per_m"].sum()
     np.testing.assert_allclose(loading["wave_loss_J_per_m"][-1], losses, rtol=1e-9)
+
+
+# Slow slip
+
+
+def test_slow_slip_and_events_follow_one_another(stick_slip):
+    sequence = slipfront.open(stick_slip)
+    assert len(sequence.slow) == len(sequence.runs) == 2
+    now_s, slip_m, psi, touch = 0.0, 0.0, sequence.slow[0]["psi"][0], slice(None)
+    for slow, run, begin_s in zip(sequence.slow, sequence.runs, sequence.events["begin_s"], strict=True):
+        event = run.history.load()
+        assert 0 <= slow["time_s"][0] - now_s <= event["time_s"][1]
+        np.testing.assert_allclose(slow["time_s"][-1], begin_s, rtol=1e-12)
+        # Where contact is open nothing holds the slip.
+        np.testing.assert_allclose((slow["slip_m"][0] - slip_m)[touch], 0, atol=1e-12)
+        np.testing.assert_array_equal(slow["psi"][0], psi)
+        np.testing.assert_array_equal(slow["psi"][-1], event["psi"][0])
+        # Velocities of an event are half a sub-step apart from its displacements.
+        rate = event["slip_rate_m_per_s"][0].to_numpy()
+        touch = (event["p_Pa"][0] > 0).to_numpy()
+        off = np.abs(slow["slip_rate_m_per_s"][-1] - rate)[touch]
+        assert off.max() < 0.05 * rate[touch].max()
+        now_s = float(begin_s + event["time_s"][-1])
+        slip_m, psi = slow["slip_m"][-1] + event["slip_m"][-1], event["psi"][-1]
+        touch = (event["p_Pa"][-1] > 0).to_numpy()
+
+
+def test_the_loading_has_slow_slip(stick_slip):
+    sequence = slipfront.open(stick_slip)
+    loading = sequence.loading
+    creeps = loading.isel(row=(loading["phase"] == "creeps").to_numpy())
+    assert (np.diff(loading["time_s"]) >= 0).all()
+    for k, slow in enumerate(sequence.slow):
+        rows = creeps.isel(row=(creeps["event"] == k).to_numpy())
+        assert rows.sizes["row"] > 10
+        assert slow["time_s"][0] <= rows["time_s"].min() and rows["time_s"].max() <= slow["time_s"][-1]
+        rates = rows["fastest_slip_rate_m_per_s"].to_numpy()
+        factors = rates[1:] / rates[:-1]
+        assert ((factors > 2) | (factors < 0.5)).all()
+        # Force and fastest rate of the history at the times of both.
+        nodes = np.full(slow.sizes["x_m"], 2e-3)
+        nodes[[0, -1]] /= 2
+        times = (np.round(of["time_s"], 9) for of in (rows, slow))
+        _, i, j = np.intersect1d(*times, return_indices=True)
+        assert len(i) > 3
+        np.testing.assert_allclose(
+            slow["t_Pa"][j].to_numpy() @ nodes, rows["shear_force_N_per_m"][i], rtol=1e-6
+        )
+        np.testing.assert_allclose(np.abs(slow["slip_rate_m_per_s"][j]).max("x_m"), rates[i], rtol=1e-6)
+
+
+def test_only_a_law_with_a_state_has_slow_slip(folder):
+    sequence = slipfront.open(folder)
+    assert len(sequence.slow) == 0 and sequence.slow[:] == []
+    assert not (folder / "slow").exists()
+
+
+def test_slow_slip_behind_the_last_event(tmp_path):
+    found = slipfront.run(STICK_SLIP + "end_s = 120.0\n", output=tmp_path / "out")
+    assert (len(found.runs), len(found.slow)) == (1, 2)
+    assert float(found.slow[-1]["time_s"][-1]) == 120
+    assert found.loading["phase"][-1] == "loaded"
+
+
+def test_slow_slip_goes_on_as_if_it_had_never_stopped(stick_slip, tmp_path):
+    def stop(part, step, _total):
+        if part == "event 2" and step > 0:
+            raise RuntimeError("enough")
+
+    place = tmp_path / "out"
+    with pytest.raises(RuntimeError, match="enough"):
+        slipfront.run(STICK_SLIP, output=place, progress=stop)
+    assert len(slipfront.open(place).slow) == 1
+    slipfront.resume(place)
+    require_same_bytes(place, stick_slip, *TABLES)
+    for k in ("0001", "0002"):
+        require_same_bytes(place / "slow" / k, stick_slip / "slow" / k, "interface.h5")
 
 
 # Refused
@@ -237,6 +351,14 @@ def test_an_event_that_is_missing_or_of_another_sequence_is_refused(copy):
     assert "0004/checksums.sha256: does not match" in refused(lambda: runs[3])
     assert "interface.h5: does not match" in refused(lambda: runs[1].history)
     assert runs[0].status == "complete"
+
+
+def test_slow_slip_that_was_changed_is_refused(stick_slip, tmp_path):
+    copied = shutil.copytree(stick_slip, tmp_path / "out")
+    flip(copied / "slow/0002/interface.h5")
+    slow = slipfront.open(copied).slow
+    assert "slow/0002/interface.h5: does not match checksums.sha256" in refused(lambda: slow[1])
+    assert slow[0].sizes["time_s"] > 100
 
 
 @pytest.mark.parametrize(
