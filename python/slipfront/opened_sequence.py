@@ -57,7 +57,7 @@ LOADING_NAMES = {
     "shear_over_normal": "shear over normal force",
     "normal_force_x_m": "where along the interface the normal force acts",
     "fastest_slip_rate_m_per_s": "slip rate of the fastest node, of a law with a state",
-    "wave_loss_J_per_m": "energy of the waves left at the ends of the events so far and radiated by slow slip",
+    "wave_loss_J_per_m": "energy of waves left at the ends of the events so far and radiated by slow slip",
 }
 
 
@@ -184,9 +184,9 @@ class OpenSequence:
 
     @cached_property
     def loading(self) -> xr.Dataset:
-        """loading.csv over `row`: forces and energies of the tilted sample, and where each event begins, ends
-        to slip and is at rest. `phase`: tilted, event_begins, slip_ends, at_rest, loaded, creeps; `event`: the
-        number of those that have begun."""
+        """loading.csv over `row`: forces and energies of the tilted sample, and where each event begins,
+        ends to slip and is at rest. `phase`: tilted, event_begins, slip_ends, at_rest, loaded, creeps;
+        `event`: the number of those that have begun."""
         table = self._table("loading.csv")
         variables = table_variables(table, "row")
         variables["event"] = xr.Variable(("row",), numbers_of_events(table))
@@ -200,9 +200,9 @@ class OpenSequence:
 
     @property
     def slow(self) -> Sequence[xr.Dataset]:
-        """Under a law with a state the slow slip before each event, as OpenRun.history, with time and slip since
-        the tilt; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the last event
-        too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
+        """Under a law with a state the slow slip before each event, as OpenRun.history, with time and slip
+        since the tilt; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the
+        last event too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
         n_most = self.events.sizes["event"] + (1 if self.status == "complete" else 0)
         return SlowSlip(self.folder, n_most, self._kept, self._attributes())
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import json
 import re
@@ -407,6 +408,7 @@ def test_the_page_holds_each_event(folder, tmp_path):
         np.testing.assert_allclose(drawn, factor * sequence.events[column], rtol=1e-4)
     np.testing.assert_allclose(data["slip"]["after"], 1e6 * np.cumsum(sequence.slip, axis=0), rtol=1e-4)
     assert {len(values) for values in data["loading"].values()} == {1 + 2 * N_EVENTS}
+    assert data["phases"] is None and 'id="phases-plot"' not in text
     rows = re.findall(r"<tr><td>(\d+)</td>", text)
     assert rows == ["1", "2", "3", "4"]
     for part in ("coarse sequence", "complete: sequence.max_events = 4 was reached", "where event 1 begins"):
@@ -423,6 +425,41 @@ def test_what_the_page_leaves_out_is_told(folder, tmp_path, monkeypatch):
     assert len(slip["x"]) == 20 and (slip["x"][0], slip["x"][-1]) == (0, 200) and slip["events"] == [1, 4]
     last = 1e6 * slipfront.open(folder).slip.sum("event")
     np.testing.assert_allclose(slip["after"][1][::19], last[::50], rtol=1e-4)
+
+
+def test_the_page_shows_slow_slip(stick_slip, tmp_path, monkeypatch):
+    sequence = slipfront.open(stick_slip)
+    rows_of_a_phase = 40
+    monkeypatch.setattr("slipfront.report.sequence.MOST_ROWS_OF_PHASES", 4 * rows_of_a_phase)
+    text = page_of(stick_slip, tmp_path / "page.html")
+    assert 'id="phases-plot"' in text and '<a href="#phases">' in text
+    data = data_of(text)["sequence"]
+    shown = sequence.loading.isel(row=(sequence.loading["phase"] != "slip_ends").to_numpy())
+    np.testing.assert_allclose(data["loading"]["ratio"], shown["shear_over_normal"], rtol=1e-4, atol=1e-9)
+    # Behind the first event: what has slipped slowly before it, and in it.
+    after = sequence.slow[0]["slip_m"][-1] + sequence.runs[0].history["slip_m"][-1]
+    np.testing.assert_allclose(data["slip"]["after"][0], 1e6 * after, rtol=1e-4, atol=1e-6)
+    phases = data["phases"]
+    np.testing.assert_allclose(phases["borders"], np.linspace(0, 4, 4 * rows_of_a_phase + 1), atol=1e-4)
+    codes = np.frombuffer(base64.b64decode(phases["rates"]), np.uint8).reshape(4, rows_of_a_phase, -1)
+    times = np.array(phases["time"], float).reshape(4, -1)
+    for k in range(2):
+        begin_s = float(sequence.events["begin_s"][k])
+        for history, from_s, row in (
+            (sequence.slow[k], 0, 2 * k),
+            (sequence.runs[k].history, begin_s, 2 * k + 1),
+        ):
+            ends = history.isel(time_s=[0, -1])
+            np.testing.assert_allclose(times[row][[0, -1]], from_s + ends["time_s"], rtol=1e-9)
+            power = np.log10(np.clip(np.abs(ends["slip_rate_m_per_s"]), 1e-12, 1)).to_numpy()
+            expected = np.where(ends["p_Pa"] > 0, np.round(254 * (power + 12) / 12), 255)
+            np.testing.assert_array_equal(codes[row][[0, -1]], expected)
+
+
+def test_of_slow_slip_the_page_has_few_loads(stick_slip, tmp_path, monkeypatch):
+    monkeypatch.setattr("slipfront.report.sequence.MOST_CREEPS", 5)
+    loading = data_of(page_of(stick_slip, tmp_path / "page.html"))["sequence"]["loading"]
+    assert {len(values) for values in loading.values()} == {1 + 2 * 2 + 5}
 
 
 def test_the_page_of_a_sequence_that_is_not_over(interrupted):
@@ -460,6 +497,24 @@ def test_the_picture_shows_the_tables(folder, tmp_path, capsys):
     assert main([str(tmp_path / "b.png"), str(folder / "events/0001")]) == 2
     assert "b.png" not in [file.name for file in tmp_path.iterdir()]
     capsys.readouterr()
+
+
+def test_the_picture_shows_slow_slip(stick_slip):
+    sequence = slipfront.open(stick_slip)
+    force, phases, _, slip, bar = draw(sequence).figure.axes
+    assert len(force.lines[0].get_ydata()) == sequence.loading.sizes["row"]
+    after = sequence.slow[1]["slip_m"][-1] + sequence.runs[1].history["slip_m"][-1]
+    np.testing.assert_allclose(slip.lines[-1].get_ydata(), 1e6 * after)
+    image = phases.collections[0]
+    rates = image.get_array()
+    assert np.ma.max(rates) <= 1 and np.ma.min(rates) >= 1e-12
+    first = np.clip(np.abs(sequence.slow[0]["slip_rate_m_per_s"][0]), 1e-12, 1)
+    np.testing.assert_allclose(rates[0], first)
+    edges = image.get_coordinates()
+    assert (edges[0, 0, 1], edges[-1, 0, 1]) == (0, 4)
+    begins = [f"{k}: {t:.6g} s" for k, t in enumerate(sequence.events["begin_s"].to_numpy(), 1)]
+    assert [label.get_text() for label in phases.get_yticklabels()] == begins
+    assert "m/s" in bar.get_ylabel()
 
 
 WEAKENING = """

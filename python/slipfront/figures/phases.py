@@ -16,8 +16,9 @@ RATE_RANGE_M_PER_S = (1e-12, 1.0)
 
 @dataclass(frozen=True)
 class Phases:
-    """Slip rates of phase after phase, slow slip and events by turns. Phase k goes from level k to k + 1: slow
-    slip evenly over the steps of its history, which are shorter where it is faster, an event over time."""
+    """Slip rates of phase after phase, slow slip and events by turns. Phase k goes from level k to k + 1:
+    slow slip evenly over the steps of its history, which are shorter where it is faster, an event over
+    time."""
 
     x_m: np.ndarray  # [nodes]
     borders: np.ndarray  # levels between rows [rows + 1]
@@ -45,7 +46,8 @@ def phases(sequence: OpenSequence, most_rows: int, most_nodes: int) -> Phases:
         rows = history.isel(time_s=even(history.sizes["time_s"], each)).load().isel(x_m=nodes)
         borders.append(k + np.linspace(0, 1, rows.sizes["time_s"] + 1)[1:])
         times.append(from_s + rows["time_s"].to_numpy())
-        rates.append(np.abs(rows["slip_rate_m_per_s"]).where(rows["p_Pa"] > 0).to_numpy())
+        touch = rows["p_Pa"].to_numpy() > 0
+        rates.append(np.where(touch, np.abs(rows["slip_rate_m_per_s"].to_numpy()), np.nan))
     x_m = histories[0][0]["x_m"].to_numpy()[nodes]
     return Phases(x_m, np.concatenate(borders), np.concatenate(times), np.concatenate(rates))
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sequence of events at a glance: its force, the extents of its events, the slip that they leave, and under a
-law with a state the slip rates of all phases.
+"""A sequence of events at a glance: its force, the extents of its events, the slip that they leave, and under
+a law with a state the slip rates of all phases.
 
 usage: python -m slipfront.figures.sequence PICTURE DIR, output folder of `slipfront run` with
 sequence.max_events above 1"""

@@ -194,8 +194,8 @@ PHASES_SECTION = section(
     "Slip rates",
     plot("phases-plot", "Slip rate over place and over slow slip and events by turns"),
     "<p>Upward slow slip and events by turns: slow slip evenly over the steps of the computation, which are "
-    "shorter where it is faster; above each orange line the event that its left end names, over its time. Grey: "
-    "contact is open. Rows are left out evenly.</p>",
+    "shorter where it is faster; above each orange line an event over its time. Grey: contact is open. "
+    "Rows are left out evenly.</p>",
 )
 
 
