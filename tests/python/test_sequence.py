@@ -354,12 +354,13 @@ def test_an_event_that_is_missing_or_of_another_sequence_is_refused(copy):
     assert runs[0].status == "complete"
 
 
-def test_slow_slip_that_was_changed_is_refused(stick_slip, tmp_path):
+def test_slow_slip_that_is_missing_or_was_changed_is_refused(stick_slip, tmp_path):
     copied = shutil.copytree(stick_slip, tmp_path / "out")
+    shutil.rmtree(copied / "slow/0001")
     flip(copied / "slow/0002/interface.h5")
     slow = slipfront.open(copied).slow
     assert "slow/0002/interface.h5: does not match checksums.sha256" in refused(lambda: slow[1])
-    assert slow[0].sizes["time_s"] > 100
+    assert "slow/0001/interface.h5: missing" in refused(lambda: slow[0])
 
 
 @pytest.mark.parametrize(
