@@ -548,9 +548,30 @@ event.kind = "spontaneous"
 max_events = 3
 end_s = 500.0
 to_global_sliding = true
+healing_per_e_fold = 0.01
+healing_time_s = 2.0
 [loading]
 pusher_from_m = 8e-3
 pusher_to_m = 16e-3
+""",
+    "slow slip": """
+[plate]
+element_size_m = 4e-3
+corner = "none"
+[loading]
+mean_pressure_Pa = 5e6
+[friction]
+law = "rate_and_state_aging"
+a = 0.01
+b = 0.015
+d_c_m = 1e-6
+V_i_m_per_s = 1e-6
+[event]
+kind = "spontaneous"
+[sequence]
+max_events = 2
+end_s = 1.0
+inertia_slip_rate_m_per_s = 5e-3
 """,
 }
 
