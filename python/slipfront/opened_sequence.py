@@ -115,11 +115,9 @@ class Runs(Sequence[OpenRun]):
 class SlowSlip(Sequence[xr.Dataset]):
     """Histories of slow slip, each opened when it is asked for."""
 
-    def __init__(self, folder: Path, n_most: int, kept: Kept | None, attrs: dict[str, str]) -> None:
+    def __init__(self, folder: Path, n_phases: int, kept: Kept | None, attrs: dict[str, str]) -> None:
         self._folder, self._kept, self._attrs = folder, kept, attrs
-        self._files = [
-            file for k in range(1, n_most + 1) if exists(file := folder / f"slow/{k:04}/interface.h5")
-        ]
+        self._files = [folder / f"slow/{k:04}/interface.h5" for k in range(1, n_phases + 1)]
 
     def __len__(self) -> int:
         return len(self._files)
@@ -205,8 +203,10 @@ class OpenSequence:
         """Under a law with a state the slow slip before each event, as OpenRun.history, with time and slip
         since the tilt; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the
         last event too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
-        n_most = self.events.sizes["event"] + (1 if self.status == "complete" else 0)
-        return SlowSlip(self.folder, n_most, self._kept, self._attributes())
+        folder, n_events = self.folder, self.events.sizes["event"]
+        behind_the_last = self.status == "complete" and exists(folder / f"slow/{n_events + 1:04}")
+        n_phases = n_events + behind_the_last if exists(folder / "slow") else 0
+        return SlowSlip(folder, n_phases, self._kept, self._attributes())
 
     @cached_property
     def slip(self) -> xr.DataArray:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/clock.hpp"
@@ -237,9 +238,10 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   constexpr std::int64_t steps_per_row = 4;
   const auto from = loading_.back();
   const auto& state = slow_->state();
-  double row_rate_m_per_s = 0;
+  double row_rate_m_per_s = 0, last_row_s = -std::numeric_limits<double>::infinity();
   const auto u_tilted = relative(initial_, statics_.tilted());
   const auto give_row = [&] {
+    if (std::exchange(last_row_s, state.time_s) == state.time_s) return;  // the end is such a step, too
     record::History row{
         {state.time_s}, at_rest_.tractions.x_m, state.u_x_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa,
         {state.psi}};

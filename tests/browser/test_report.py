@@ -28,7 +28,14 @@ SEQUENCE = [
     "papers/kammer2012/spontaneous.toml",
     *sets("plate.element_size_m=4e-3", "fronts.l_star_m=4e-3", "time.end_s=20e-3", "sequence.max_events=3"),
 ]
-PLOTS = {"sequence": ("forces", "extents", "slips")}  # of other pages those of a run
+STICK_SLIP = [
+    "examples/stick-slip/case.toml",
+    *sets("plate.element_size_m=8e-3", "sequence.max_events=3"),
+]
+PLOTS = {  # of other pages those of a run
+    "sequence": ("forces", "extents", "slips"),
+    "stick-slip": ("forces", "extents", "slips", "phases"),
+}
 SWEPT = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "event.trigger_zone_m=0.02,0.03"]
 
 
@@ -47,11 +54,12 @@ FRONTS = f"{data('criteria')}.filter(t => t.meta?.front !== undefined)"
 
 @pytest.fixture(scope="session")
 def pages(tmp_path_factory):
-    """Pages of a run on a rigid plane, of one of two bodies, of a reproduction, a sweep and a sequence."""
+    """Pages of a run on a rigid plane, of one of two bodies, of a reproduction, a sweep and sequences."""
     folder = tmp_path_factory.mktemp("pages")
     commands = {name: ["run", *case, "--quiet"] for name, case in CASES.items()}
     commands["reproduction"] = ["reproduce", "--quick"]
     commands["sequence"] = ["run", *SEQUENCE, "--quiet"]
+    commands["stick-slip"] = ["run", *STICK_SLIP, "--quiet"]
     commands["sweep"] = ["sweep", *CASES["probes"], *SWEPT, "--quiet"]
     found = {}
     for name, command in commands.items():
@@ -120,7 +128,7 @@ def change(browser, control, value, event):
     browser.execute_script(f"{element} s.dispatchEvent(new Event('{event}'))")
 
 
-@pytest.mark.parametrize("name", [*CASES, "reproduction", "sequence"])
+@pytest.mark.parametrize("name", [*CASES, "reproduction", "sequence", "stick-slip"])
 def test_a_page_draws_without_errors_and_without_a_network(opened, name):
     browser = opened(name)
     assert browser.get_log("browser") == []

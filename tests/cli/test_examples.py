@@ -29,6 +29,7 @@ COARSE_M = {
     "two-bodies": 0.5e-3,
     "experiment": 1e-3,
     "precursors": 2e-3,
+    "stick-slip": 8e-3,
 }
 
 
@@ -173,3 +174,18 @@ def test_precursors_grow_with_the_force_until_all_slides_below_mu_s(folder):
     # Fronts near c_S outrun what is predicted; those of the first event do not.
     beyond_m = ends_m - large.predicted_to_x_m.to_numpy()
     assert beyond_m[0] < 0.01 and np.nanmin(beyond_m[-4:]) > 0.03
+
+
+def test_stick_slip_runs_away_from_half_of_the_nucleation_length(folder):
+    half_m, h_m = 0.051, COARSE_M["stick-slip"]
+    sequence = slipfront.open(folder("stick-slip"))
+    events = sequence.events
+    assert events.sizes["event"] == 10
+    assert events.is_global.to_numpy().tolist() == [0] + 9 * [1]
+    np.testing.assert_allclose(events.begin_x_m[1:], 0.2, atol=h_m)
+    np.testing.assert_allclose(np.diff(events.begin_s[5:]), 45, atol=3)
+    for slow in sequence.slow:
+        rate = np.abs(slow.slip_rate_m_per_s)
+        at = rate.isel(time_s=-1)
+        patch_m = at.x_m[at > 0.1 * at.max()]
+        assert abs(float(patch_m[-1] - patch_m[0]) / 2 - half_m) < h_m

@@ -564,6 +564,25 @@ friction.law = "rate_and_state_aging"
 max_events = 2
 inertia_slip_rate_m_per_s = 1e-3
 """,
+    "slow slip": """
+[plate]
+element_size_m = 4e-3
+corner = "none"
+[loading]
+mean_pressure_Pa = 5e6
+[friction]
+law = "rate_and_state_aging"
+a = 0.01
+b = 0.015
+d_c_m = 1e-6
+V_i_m_per_s = 1e-6
+[event]
+kind = "spontaneous"
+[sequence]
+max_events = 2
+end_s = 1.0
+inertia_slip_rate_m_per_s = 5e-3
+""",
 }
 
 

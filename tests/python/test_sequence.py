@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import json
 import re
@@ -33,6 +34,35 @@ kind = "spontaneous"
 [sequence]
 max_events = {N_EVENTS}
 """
+# Slow slip and two events in a second.
+STICK_SLIP = """\
+title = "coarse stick-slip"
+
+[plate]
+width_m = 0.1
+height_m = 0.05
+element_size_m = 2e-3
+corner = "none"
+
+[material]
+stiffness_damping_s = 1e-6
+
+[loading]
+mean_pressure_Pa = 5e6
+
+[friction]
+law = "rate_and_state_aging"
+a = 0.010
+b = 0.015
+d_c_m = 0.5e-6
+V_i_m_per_s = 1e-6
+
+[event]
+kind = "spontaneous"
+
+[sequence]
+max_events = 2
+"""
 TABLES = ("case.resolved.toml", "events.csv", "loading.csv")
 RUN_TABLES = ("interface.h5", "fronts.csv", "fracture.csv", "energy.csv", "static.csv")
 STORED = ("strain", "kinetic")
@@ -42,6 +72,13 @@ STORED = ("strain", "kinetic")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("sequence")
     require_done(program("run", write_case(place, SEQUENCE), "-q", "-o", "out", cwd=place))
+    return place / "out"
+
+
+@pytest.fixture(scope="module")
+def stick_slip(tmp_path_factory):
+    place = tmp_path_factory.mktemp("stick_slip")
+    require_done(program("run", write_case(place, STICK_SLIP), "-q", "-o", "out", cwd=place))
     return place / "out"
 
 
@@ -184,8 +221,9 @@ def test_runs_are_the_events(folder):
         assert slip.max() == event["max_slip_m"]
 
 
-def test_the_energies_balance(folder):
-    loading = slipfront.open(folder).loading
+@pytest.mark.parametrize("which", ["folder", "stick_slip"])
+def test_the_energies_balance(which, request):
+    loading = slipfront.open(request.getfixturevalue(which)).loading
     terms = {term: loading[f"{term}_J_per_m"].to_numpy() for term in ENERGY_TERMS}
     change = sum(terms[term] - terms[term][0] for term in STORED)
     works = sum(values for term, values in terms.items() if term not in STORED)
@@ -206,6 +244,83 @@ def test_what_an_event_releases_is_what_the_loading_loses(folder):
     np.testing.assert_allclose(strain["event_begins"] - strain["at_rest"], released, rtol=1e-9)
     losses = sequence.events["wave_loss_J_per_m"].sum()
     np.testing.assert_allclose(loading["wave_loss_J_per_m"][-1], losses, rtol=1e-9)
+
+
+# Slow slip
+
+
+def test_slow_slip_and_events_follow_one_another(stick_slip):
+    sequence = slipfront.open(stick_slip)
+    assert len(sequence.slow) == len(sequence.runs) == 2
+    now_s, slip_m, psi, touch = 0.0, 0.0, sequence.slow[0]["psi"][0], slice(None)
+    for slow, run, begin_s in zip(sequence.slow, sequence.runs, sequence.events["begin_s"], strict=True):
+        event = run.history.load()
+        assert 0 <= slow["time_s"][0] - now_s <= event["time_s"][1]
+        np.testing.assert_allclose(slow["time_s"][-1], begin_s, rtol=1e-12)
+        # Where contact is open nothing holds the slip.
+        np.testing.assert_allclose((slow["slip_m"][0] - slip_m)[touch], 0, atol=1e-12)
+        np.testing.assert_array_equal(slow["psi"][0], psi)
+        np.testing.assert_array_equal(slow["psi"][-1], event["psi"][0])
+        # Velocities of an event are half a sub-step apart from its displacements.
+        rate = event["slip_rate_m_per_s"][0].to_numpy()
+        touch = (event["p_Pa"][0] > 0).to_numpy()
+        off = np.abs(slow["slip_rate_m_per_s"][-1] - rate)[touch]
+        assert off.max() < 0.05 * rate[touch].max()
+        now_s = float(begin_s + event["time_s"][-1])
+        slip_m, psi = slow["slip_m"][-1] + event["slip_m"][-1], event["psi"][-1]
+        touch = (event["p_Pa"][-1] > 0).to_numpy()
+
+
+def test_the_loading_has_slow_slip(stick_slip):
+    sequence = slipfront.open(stick_slip)
+    loading = sequence.loading
+    creeps = loading.isel(row=(loading["phase"] == "creeps").to_numpy())
+    assert (np.diff(loading["time_s"]) >= 0).all()
+    for k, slow in enumerate(sequence.slow):
+        rows = creeps.isel(row=(creeps["event"] == k).to_numpy())
+        assert rows.sizes["row"] > 10
+        assert slow["time_s"][0] <= rows["time_s"].min() and rows["time_s"].max() <= slow["time_s"][-1]
+        rates = rows["fastest_slip_rate_m_per_s"].to_numpy()
+        factors = rates[1:] / rates[:-1]
+        assert ((factors > 2) | (factors < 0.5)).all()
+        # Force and fastest rate of the history at the times of both.
+        nodes = np.full(slow.sizes["x_m"], 2e-3)
+        nodes[[0, -1]] /= 2
+        times = (np.round(of["time_s"], 9) for of in (rows, slow))
+        _, i, j = np.intersect1d(*times, return_indices=True)
+        assert len(i) > 3
+        np.testing.assert_allclose(
+            slow["t_Pa"][j].to_numpy() @ nodes, rows["shear_force_N_per_m"][i], rtol=1e-6
+        )
+        np.testing.assert_allclose(np.abs(slow["slip_rate_m_per_s"][j]).max("x_m"), rates[i], rtol=1e-6)
+
+
+def test_only_a_law_with_a_state_has_slow_slip(folder):
+    sequence = slipfront.open(folder)
+    assert len(sequence.slow) == 0 and sequence.slow[:] == []
+    assert not (folder / "slow").exists()
+
+
+def test_slow_slip_behind_the_last_event(tmp_path):
+    found = slipfront.run(STICK_SLIP + "end_s = 120.0\n", output=tmp_path / "out")
+    assert (len(found.runs), len(found.slow)) == (1, 2)
+    assert float(found.slow[-1]["time_s"][-1]) == 120
+    assert found.loading["phase"][-1] == "loaded"
+
+
+def test_slow_slip_goes_on_as_if_it_had_never_stopped(stick_slip, tmp_path):
+    def stop(part, step, _total):
+        if part == "event 2" and step > 0:
+            raise RuntimeError("enough")
+
+    place = tmp_path / "out"
+    with pytest.raises(RuntimeError, match="enough"):
+        slipfront.run(STICK_SLIP, output=place, progress=stop)
+    assert len(slipfront.open(place).slow) == 1
+    slipfront.resume(place)
+    require_same_bytes(place, stick_slip, *TABLES)
+    for k in ("0001", "0002"):
+        require_same_bytes(place / "slow" / k, stick_slip / "slow" / k, "interface.h5")
 
 
 # Refused
@@ -237,6 +352,15 @@ def test_an_event_that_is_missing_or_of_another_sequence_is_refused(copy):
     assert "0004/checksums.sha256: does not match" in refused(lambda: runs[3])
     assert "interface.h5: does not match" in refused(lambda: runs[1].history)
     assert runs[0].status == "complete"
+
+
+def test_slow_slip_that_is_missing_or_was_changed_is_refused(stick_slip, tmp_path):
+    copied = shutil.copytree(stick_slip, tmp_path / "out")
+    shutil.rmtree(copied / "slow/0001")
+    flip(copied / "slow/0002/interface.h5")
+    slow = slipfront.open(copied).slow
+    assert "slow/0002/interface.h5: does not match checksums.sha256" in refused(lambda: slow[1])
+    assert "slow/0001/interface.h5: missing" in refused(lambda: slow[0])
 
 
 @pytest.mark.parametrize(
@@ -285,6 +409,7 @@ def test_the_page_holds_each_event(folder, tmp_path):
         np.testing.assert_allclose(drawn, factor * sequence.events[column], rtol=1e-4)
     np.testing.assert_allclose(data["slip"]["after"], 1e6 * np.cumsum(sequence.slip, axis=0), rtol=1e-4)
     assert {len(values) for values in data["loading"].values()} == {1 + 2 * N_EVENTS}
+    assert data["phases"] is None and 'id="phases-plot"' not in text
     rows = re.findall(r"<tr><td>(\d+)</td>", text)
     assert rows == ["1", "2", "3", "4"]
     for part in ("coarse sequence", "complete: sequence.max_events = 4 was reached", "where event 1 begins"):
@@ -301,6 +426,41 @@ def test_what_the_page_leaves_out_is_told(folder, tmp_path, monkeypatch):
     assert len(slip["x"]) == 20 and (slip["x"][0], slip["x"][-1]) == (0, 200) and slip["events"] == [1, 4]
     last = 1e6 * slipfront.open(folder).slip.sum("event")
     np.testing.assert_allclose(slip["after"][1][::19], last[::50], rtol=1e-4)
+
+
+def test_the_page_shows_slow_slip(stick_slip, tmp_path, monkeypatch):
+    sequence = slipfront.open(stick_slip)
+    rows_of_a_phase = 40
+    monkeypatch.setattr("slipfront.report.sequence.MOST_ROWS_OF_PHASES", 4 * rows_of_a_phase)
+    text = page_of(stick_slip, tmp_path / "page.html")
+    assert 'id="phases-plot"' in text and '<a href="#phases">' in text
+    data = data_of(text)["sequence"]
+    shown = sequence.loading.isel(row=(sequence.loading["phase"] != "slip_ends").to_numpy())
+    np.testing.assert_allclose(data["loading"]["ratio"], shown["shear_over_normal"], rtol=1e-4, atol=1e-9)
+    # Behind the first event: what has slipped slowly before it, and in it.
+    after = sequence.slow[0]["slip_m"][-1] + sequence.runs[0].history["slip_m"][-1]
+    np.testing.assert_allclose(data["slip"]["after"][0], 1e6 * after, rtol=1e-4, atol=1e-6)
+    phases = data["phases"]
+    np.testing.assert_allclose(phases["borders"], np.linspace(0, 4, 4 * rows_of_a_phase + 1), atol=1e-4)
+    codes = np.frombuffer(base64.b64decode(phases["rates"]), np.uint8).reshape(4, rows_of_a_phase, -1)
+    times = np.array(phases["time"], float).reshape(4, -1)
+    for k in range(2):
+        begin_s = float(sequence.events["begin_s"][k])
+        for history, from_s, row in (
+            (sequence.slow[k], 0, 2 * k),
+            (sequence.runs[k].history, begin_s, 2 * k + 1),
+        ):
+            ends = history.isel(time_s=[0, -1])
+            np.testing.assert_allclose(times[row][[0, -1]], from_s + ends["time_s"], rtol=1e-9)
+            power = np.log10(np.clip(np.abs(ends["slip_rate_m_per_s"]), 1e-12, 1)).to_numpy()
+            expected = np.where(ends["p_Pa"] > 0, np.round(254 * (power + 12) / 12), 255)
+            np.testing.assert_array_equal(codes[row][[0, -1]], expected)
+
+
+def test_of_slow_slip_the_page_has_few_loads(stick_slip, tmp_path, monkeypatch):
+    monkeypatch.setattr("slipfront.report.sequence.MOST_CREEPS", 5)
+    loading = data_of(page_of(stick_slip, tmp_path / "page.html"))["sequence"]["loading"]
+    assert {len(values) for values in loading.values()} == {1 + 2 * 2 + 5}
 
 
 def test_the_page_of_a_sequence_that_is_not_over(interrupted):
@@ -338,6 +498,24 @@ def test_the_picture_shows_the_tables(folder, tmp_path, capsys):
     assert main([str(tmp_path / "b.png"), str(folder / "events/0001")]) == 2
     assert "b.png" not in [file.name for file in tmp_path.iterdir()]
     capsys.readouterr()
+
+
+def test_the_picture_shows_slow_slip(stick_slip):
+    sequence = slipfront.open(stick_slip)
+    force, phases, _, slip, bar = draw(sequence).figure.axes
+    assert len(force.lines[0].get_ydata()) == sequence.loading.sizes["row"]
+    after = sequence.slow[1]["slip_m"][-1] + sequence.runs[1].history["slip_m"][-1]
+    np.testing.assert_allclose(slip.lines[-1].get_ydata(), 1e6 * after)
+    image = phases.collections[0]
+    rates = image.get_array()
+    assert np.ma.max(rates) <= 1 and np.ma.min(rates) >= 1e-12
+    first = np.clip(np.abs(sequence.slow[0]["slip_rate_m_per_s"][0]), 1e-12, 1)
+    np.testing.assert_allclose(rates[0], first)
+    edges = image.get_coordinates()
+    assert (edges[0, 0, 1], edges[-1, 0, 1]) == (0, 4)
+    begins = [f"{k}: {t:.6g} s" for k, t in enumerate(sequence.events["begin_s"].to_numpy(), 1)]
+    assert [label.get_text() for label in phases.get_yticklabels()] == begins
+    assert "m/s" in bar.get_ylabel()
 
 
 WEAKENING = """

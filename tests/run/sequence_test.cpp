@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "cases.hpp"
 #include "input/friction_along_x.hpp"
@@ -507,9 +508,12 @@ TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
   Sequence sequence(config, test::go_on);
   const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
   while (sequence.end().empty()) {
-    std::vector<double> psi_before, psi_first;
-    const auto* initial =
-        sequence.next([&](const record::History& row) { psi_before = row.law_states.front(); });
+    std::vector<double> psi_before;
+    double time_s = -1;
+    const auto* initial = sequence.next([&](const record::History& row) {
+      psi_before = row.law_states.front();
+      EXPECT_GT(row.time_s.front(), std::exchange(time_s, row.time_s.front()));
+    });
     ASSERT_NE(initial, nullptr);
     EXPECT_EQ(initial->law_states.front(), psi_before);
     const auto& begins = sequence.loading().back();

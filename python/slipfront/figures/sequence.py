@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sequence of events at a glance: its force, the extents of its events, and the slip that they leave.
+"""A sequence of events at a glance: its force, the extents of its events, the slip that they leave, and under
+a law with a state the slip rates of all phases.
 
 usage: python -m slipfront.figures.sequence PICTURE DIR, output folder of `slipfront run` with
 sequence.max_events above 1"""
@@ -10,17 +11,23 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
+from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
 from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.figures.space_time import OPEN_COLOUR, cell_edges
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
 from slipfront.read import read_place
 
 LOCAL, GLOBAL, PREDICTED = "#0072b2", "#d55e00", "#000000"
+MOST_ROWS, MOST_NODES, MOST_LABELS = 1200, 400, 24  # of all phases
 FORCE_LABEL = r"$F_\mathrm{S} / F_\mathrm{N}$"
 
 
@@ -55,25 +62,59 @@ def draw_slip(ax: Axes, sequence: OpenSequence) -> None:
     """What has slipped after each event."""
     slip = sequence.slip
     for number, row, colour in zip(
-        slip["event"].to_numpy(), slip.cumsum("event").to_numpy(), colours(sequence), strict=True
+        slip["event"].to_numpy(), slip_after_events(sequence), colours(sequence), strict=True
     ):
         ax.plot(style.mm(slip["x_m"]), 1e6 * row, linewidth=0.6, color=colour, gid=f"slip:{number}")
     ax.set(xlabel="$x$ (mm)", ylabel="slip after each event (µm)")
 
 
+def draw_phases(figure: Figure, ax: Axes, sequence: OpenSequence) -> None:
+    """Slip rate over place and phase, with the number of each event and when it begins."""
+    of = phases(sequence, MOST_ROWS, MOST_NODES)
+    image = ax.pcolormesh(
+        style.mm(cell_edges(of.x_m)),
+        of.borders,
+        np.clip(of.slip_rate_m_per_s, *RATE_RANGE_M_PER_S),
+        cmap=colormaps["YlGnBu"].with_extremes(bad=OPEN_COLOUR),
+        norm=LogNorm(*RATE_RANGE_M_PER_S),
+        rasterized=True,
+        gid="phases",
+    )
+    for level in range(1, round(of.borders[-1])):
+        ax.axhline(level, color=GLOBAL if level % 2 == 1 else "black", linewidth=0.5)
+    shown = even(sequence.events.sizes["event"], MOST_LABELS)
+    begin_s = sequence.events["begin_s"].to_numpy()[shown]
+    labels = [f"{1 + k}: {t:.6g} s" for k, t in zip(shown, begin_s, strict=True)]
+    ax.set_yticks(1.5 + 2 * shown, labels)
+    ax.tick_params(axis="y", length=0)
+    ax.set(xlabel="$x$ (mm)", ylabel="event and its beginning, slow slip between")
+    figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="min", pad=0.02, aspect=40)
+
+
 def sequence(of: OpenSequence) -> Drawing:
-    figure = style.new_figure(style.PAGE_MM, 62)
-    axes = figure.subplots(1, 3)
-    for ax, letter, draw in zip(axes, "abc", (draw_force, draw_extents, draw_slip), strict=True):
-        draw(ax, of)
-        style.panel_letter(ax, letter)
-    for ax in axes[1:]:
-        ax.set_xlim(0, 1e3 * of.case["plate"]["width_m"])
+    is_slow = len(of.slow) > 0
+    figure = style.new_figure(style.PAGE_MM, 150 if is_slow else 62)
+    if is_slow:
+        panels = figure.subplot_mosaic("ad;bd;cd", width_ratios=(1, 1.5))
+    else:
+        panels = figure.subplot_mosaic("abc")
+    for letter, draw in zip("abc", (draw_force, draw_extents, draw_slip), strict=True):
+        draw(panels[letter], of)
     caption = (
         "(a) Shear over normal force along the loading. (b) Extent of each event over that ratio where it "
         "begins, orange where all nodes inside slip; ticks: ends predicted from the tractions before. (c) "
         "Slip along the interface after each event."
     )
+    if is_slow:
+        draw_phases(figure, panels["d"], of)
+        caption += (
+            " (d) Slip rate of phase after phase: slow slip evenly over steps, which are shorter where it is "
+            "faster, and above each orange line an event over time; grey: contact is open."
+        )
+    for letter, ax in panels.items():
+        style.panel_letter(ax, letter)
+        if letter != "a":
+            ax.set_xlim(0, 1e3 * of.case["plate"]["width_m"])
     return Drawing("sequence", figure, caption)
 
 

@@ -10,16 +10,16 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import to_hex
 
+from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
 from slipfront.figures.report import formatted, table
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
 from slipfront.read import STATUSES, Place, entry, is_sequence, read_place
 from slipfront.report import setup
-from slipfront.report.numbers import Unit, listed, unit
+from slipfront.report.numbers import Unit, listed, packed_bytes, unit
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
 from slipfront.report.run import MOST_NODES, MOST_TIMES, navigation, program_words, sessions_words, thin_run
-from slipfront.report.run_data import evenly
 from slipfront.report.sketch import sketch
 from slipfront.report.study import MOST_ROWS
 from slipfront.units import quantity, unit_of
@@ -31,9 +31,12 @@ PLACES = [
     ("forces", "Loads"),
     ("extents", "Extents"),
     ("slips", "Slip"),
+    ("phases", "Slip rates"),
     ("events", "Events"),
 ]
 MOST_CURVES = 60  # of slip, each after an event
+MOST_ROWS_OF_PHASES, MOST_CREEPS = 1000, 2000  # of slip rates, and of loads in slow slip
+NO_CONTACT = 255  # code of an open node among those of slip rates
 COLOURS, LIGHTEST = "viridis", 0.9  # from the first event to the last
 PHASES = {
     "tilted": "before any shear",
@@ -113,12 +116,36 @@ def local_strength(case: dict[str, Any]) -> float | None:
     return mu_s if is_number(mu_s) and is_one else None
 
 
+def shown_rows(phase: np.ndarray) -> np.ndarray:
+    """Of the loading: all equilibria, and of those in slow slip no more than a plot can show. [rows]"""
+    creeps = np.flatnonzero(phase == "creeps")
+    left_out = np.setdiff1d(creeps, creeps[even(len(creeps), MOST_CREEPS)])
+    return np.setdiff1d(np.flatnonzero(phase != "slip_ends"), left_out)
+
+
+def phases_data(sequence: OpenSequence, length: Unit) -> dict[str, Any] | None:
+    """Slip rates of all phases as bytes on a logarithmic scale; none under a law without a state."""
+    if len(sequence.slow) == 0:
+        return None
+    found = phases(sequence, MOST_ROWS_OF_PHASES, MOST_NODES)
+    low, high = np.log10(RATE_RANGE_M_PER_S)
+    share = (np.log10(np.clip(found.slip_rate_m_per_s, *RATE_RANGE_M_PER_S)) - low) / (high - low)
+    codes = np.where(np.isnan(share), NO_CONTACT, np.round((NO_CONTACT - 1) * np.nan_to_num(share)))
+    return {
+        "x": listed(found.x_m, length.factor),
+        "borders": listed(found.borders),
+        "time": [f"{t:.10g}" for t in found.time_s],
+        "powers": [low, high],
+        "rates": packed_bytes(codes),
+    }
+
+
 def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
     """All that the plots show; there is an event."""
     events, slip = sequence.events, sequence.slip
-    static = sequence.loading.isel(row=(sequence.loading["phase"] != "slip_ends").to_numpy())
-    after = np.cumsum(slip.to_numpy(), axis=0)
-    nodes, curves = evenly(slip.sizes["x_m"], MOST_NODES), evenly(len(after), MOST_CURVES)
+    static = sequence.loading.isel(row=shown_rows(sequence.loading["phase"].to_numpy()))
+    after = slip_after_events(sequence)
+    nodes, curves = even(slip.sizes["x_m"], MOST_NODES), even(len(after), MOST_CURVES)
     units = {
         "x": unit("length", slip["x_m"]),
         "time": unit("time", static["time_s"]),
@@ -148,9 +175,10 @@ def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
         "events": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
         "slip": {
             "x": listed(slip["x_m"][nodes], units["x"].factor),
-            "events": [1 + k for k in curves],
+            "events": (1 + curves).tolist(),
             "after": [listed(row, units["slip"].factor) for row in after[np.ix_(curves, nodes)]],
         },
+        "phases": phases_data(sequence, units["x"]),
     }
 
 
@@ -161,6 +189,16 @@ def thinning(data: dict[str, Any], n_nodes: int) -> str:
     return "".join(f" {shown} of {n} {name} are drawn." for shown, n, name in counts if shown < n)
 
 
+PHASES_SECTION = section(
+    "phases",
+    "Slip rates",
+    plot("phases-plot", "Slip rate over place and over slow slip and events by turns"),
+    "<p>Upward slow slip and events by turns: slow slip evenly over the steps of the computation, which are "
+    "shorter where it is faster; above each orange line an event over its time. Grey: contact is open. "
+    "Rows are left out evenly.</p>",
+)
+
+
 def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
     return [
         section(
@@ -169,8 +207,12 @@ def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
             plot("forces-plot", "Shear over normal force, and shear force, over time"),
             f"<p>{RATIO}: shear over normal force of the interface in static equilibria, the coefficient of "
             f"friction of the sample; dashed: {setup.MU_S} of a node, where all have the same. Filled: an "
-            "event begins; open: the equilibrium at rest behind it. From event to event the line is "
-            "straight, whatever happens there.</p>",
+            "event begins; open: the equilibrium at rest behind it. "
+            + (
+                "Between events: slow slip, a point where the fastest slip rate has doubled or halved.</p>"
+                if data["phases"]
+                else "From event to event the line is straight, whatever happens there.</p>"
+            ),
         ),
         section(
             "extents",
@@ -185,6 +227,7 @@ def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
             "<p>Slip since the tilt, after each event: the sum of what the records end with. Dark: the "
             f"first event, light: the last.{thinning(data, n_nodes)}</p>",
         ),
+        *([PHASES_SECTION] if data["phases"] else []),
     ]
 
 
@@ -245,7 +288,9 @@ def page(folder: Path, _file: Path) -> Page:
     title = str(place.info.get("title", "")) or place.name
     data = sequence_data(sequence) if n_events else {}
     remarks = [*([place.with_reason(told)] if told else []), *place.notes]
-    missing = set() if data else {"forces", "extents", "slips"}
+    missing = {"phases"} if data else {"forces", "extents", "slips", "phases"}
+    if data and data["phases"]:
+        missing = set()
     return Page(
         title=f"{title}: {told}" if told else title,
         parts=[

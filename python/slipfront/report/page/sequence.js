@@ -1,4 +1,4 @@
-// Loads, extents and slip of a sequence of events.
+// Loads, extents, slip and slip rates of a sequence of events.
 
 const eventWords = (event) => `event ${event.number}`;
 const forceRatio = 'F<sub>S</sub> / F<sub>N</sub>';
@@ -12,7 +12,7 @@ function eventMarks(name, events, x, y, symbol, told) {
 
 /** The loads over time in one of the two panels. */
 function loads({loading, events}, panel, values, before, after) {
-  const line = {type: 'scatter', mode: 'lines', name: 'static equilibria', x: loading.time, y: values, hoverinfo: 'skip',
+  const line = {type: 'scatter', mode: 'lines', name: 'equilibria', x: loading.time, y: values, hoverinfo: 'skip',
     line: {color: '#555', width: 1.5}};
   const traces = [line, eventMarks('event begins', events, (e) => e.time, before, 'circle', 'begins'),
     eventMarks('at rest', events, (e) => e.time, after, 'circle-open', 'at rest')];
@@ -70,8 +70,35 @@ function drawSlips({units, slip, events}) {
   return Plotly.react('slips-plot', traces, layout, CONFIG);
 }
 
+const NO_CONTACT = 255; // code of a node where contact is open
+const MOST_LABELS = 24;
+
+/** Slow slip and events by turns, each from a whole number to the next; nothing under a law without a state. */
+function drawPhases({units, phases, events}) {
+  if (!phases) return null;
+  const {x, borders, time, powers: [low, high]} = phases;
+  const codes = bytesOf(phases.rates);
+  const z = time.map((_, i) => Array.from(codes.subarray(i * x.length, (i + 1) * x.length),
+    (code) => (code === NO_CONTACT ? null : low + (high - low) * code / (NO_CONTACT - 1))));
+  const told = z.map((row, i) => row.map((v) => `t = ${time[i]} s, ${v === null ? 'open' : `slip rate ${(10 ** v).toExponential(1)} m/s`}`));
+  const ticks = powersOfTen(10 ** low, 10 ** high).filter((k) => k % 2 === 0);
+  const picture = {type: 'heatmap', x, y: borders, z, zmin: low, zmax: high, text: told, colorscale: FIELDS.slip_rate.colours, reversescale: true,
+    hovertemplate: `x = %{x:.4g} ${units.x}, %{text}<extra></extra>`, hoverongaps: false,
+    colorbar: {title: {text: 'slip rate |v| (m/s)', side: 'right'}, thickness: 16, tickvals: ticks, ticktext: ticks.map((k) => `10<sup>${k}</sup>`)}};
+  const named = events.filter((_, k) => k % Math.ceil(events.length / MOST_LABELS) === 0);
+  const shapes = Array.from({length: borders.at(-1) - 1}, (_, k) => ({type: 'line', xref: 'paper', x0: 0, x1: 1, y0: k + 1, y1: k + 1,
+    line: {color: k % 2 === 0 ? '#d55e00' : '#111', width: 1}}));
+  const layout = layoutWith({
+    xaxis: axis(`x (${units.x})`, {range: [x[0], x.at(-1)], showgrid: false}),
+    yaxis: axis('', {range: [0, borders.at(-1)], showgrid: false, tickvals: named.map(({number}) => 2 * number - 0.5),
+      ticktext: named.map((event) => `${eventWords(event)}: ${event.time} ${units.time}`), automargin: true}),
+    shapes, plot_bgcolor: OPEN, hovermode: 'closest',
+  });
+  return Plotly.react('phases-plot', [picture], layout, CONFIG);
+}
+
 /** Nothing on other pages. */
 function startSequence() {
   if (!byId('forces-plot')) return null;
-  return Promise.all([drawForces, drawExtents, drawSlips].map((draw) => draw(data.sequence)));
+  return Promise.all([drawForces, drawExtents, drawSlips, drawPhases].map((draw) => draw(data.sequence)));
 }
