@@ -113,6 +113,11 @@ struct Sequence {
   int max_events = 1;
   double end_s = infinity;  ///< of the loading, from the tilt on
   bool to_global_sliding = false;
+  /// Where the loading is over time, linear between; none: at its constant speed.
+  struct Path {
+    std::vector<double> times_s, shears_m;
+    bool operator==(const Path&) const = default;
+  } path;
   /// Of laws that stick: mu_s grows by the first for each e-fold of 1 + (time at rest)/(the second).
   double healing_per_e_fold = 0, healing_time_s = 1;
   /// Under a law with a state; without it that of inertia_slip_rate_m_per_s.

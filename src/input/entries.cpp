@@ -668,6 +668,14 @@ void add_sequence(Entries& all) {
       "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
+  sequence.add(
+      "times_s", [](auto& s) -> auto& { return s.path.times_s; }, above(0),
+      "times since the tilt, ascending, at which the loading has reached shears_m; none: it moves at "
+      "loading.shear_speed_over_c_L, as during each event in any case. It ends with the last one");
+  sequence.add(
+      "shears_m", [](auto& s) -> auto& { return s.path.shears_m; }, at_least(0),
+      "displacements along x of the top edge, the pusher or the machine then, none less than the one before; "
+      "linear between, from 0");
   sequence.only_with = in_sticking_sequence();
   sequence.add("healing_per_e_fold", &Sequence::healing_per_e_fold, at_least(0),
                "B of mu_s + B ln(1 + t/t_0), the coefficient of a node that has rested for t; 0: it has "

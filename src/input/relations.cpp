@@ -415,6 +415,20 @@ void check_machine(const Case& config) {
     throw UserError("{} needs {} = double", key, Key("time.precision"));
 }
 
+void check_path(const Sequence::Path& path) {
+  const auto& [times_s, shears_m] = path;
+  const Key times("sequence.times_s"), shears("sequence.shears_m");
+  if (times_s.size() != shears_m.size())
+    throw UserError("{} has {} values and {} has {}; give one displacement per time", times, times_s.size(),
+                    shears, shears_m.size());
+  const auto stop = std::ranges::adjacent_find(times_s, std::greater_equal<>());
+  if (stop != times_s.end())
+    throw UserError("{} must rise: {:.12g} s comes before {:.12g} s", times, *stop, *(stop + 1));
+  const auto fall = std::ranges::adjacent_find(shears_m, std::greater<>());
+  if (fall != shears_m.end())
+    throw UserError("{} must not fall: {:.12g} m comes before {:.12g} m", shears, *fall, *(fall + 1));
+}
+
 /// What makes the end of an event known, and the places at which its nodes have come to rest.
 void check_sequence(const Case& config) {
   if (!is_sequence(config)) return;
@@ -427,6 +441,7 @@ void check_sequence(const Case& config) {
     throw UserError(
         "{} = initial_pressure leaves no pressure to slow slip between events; choose none or pressure",
         Key("friction.regularisation"));
+  check_path(config.sequence.path);
   const double quiet_s = config.time.quiet_s;
   if (!(quiet_s < config.time.end_s))
     throw UserError("{} is {:g} s; with {} > 1 it must be less than {} = {:g} s: each event comes to rest",

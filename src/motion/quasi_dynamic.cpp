@@ -130,7 +130,7 @@ bool QuasiDynamicSlip::correct_contact() {
 double QuasiDynamicSlip::try_step(double dt_s) {
   const std::size_t n = tributary_m_.size();
   // The stages' rates: now, at a half, at three quarters, and at the end, where the next step begins.
-  auto& [k2, k3, k4] = stages_;
+  Rates &k2 = stages_[0], &k3 = stages_[1], &k4 = stages_[2];
   const auto& k1 = rates_;
   next_ = now_;
   const auto go = [&](double share, const auto& sum, Rates& rates) {

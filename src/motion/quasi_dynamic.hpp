@@ -51,6 +51,8 @@ class QuasiDynamicSlip {
   /// From an equilibrium in which the slip rates follow from the tractions and psi.
   void start(double time_s, double shear_m, std::vector<statics::Contact> contact, std::vector<double> u_x_m,
              std::vector<double> psi);
+  /// From now on.
+  void set_edge_speed(double m_per_s) { edge_speed_m_per_s_ = m_per_s; }
   /// @return why it ended: whether a node has passed the slip rate, by no more than a tenth, before the end
   /// @param after_step  whether another step may follow
   bool slip_until(double end_s, double slip_rate_m_per_s, const std::function<bool()>& after_step);

@@ -63,6 +63,7 @@ void add_event_works(const record::Energies& of_event, record::Energies& sum) {
 
 Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, const Processes& processes)
     : config_(config),
+      path_(config),
       initial_(unloaded_state(config, processes)),
       statics_(statics_of(config_, initial_, [monitor] { return monitor(0, 0); })),
       plate_(solid::make_operator(initial_.mesh, config.material)),
@@ -75,12 +76,8 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
     begin_slow_slip();
   else if (has_fracture_energy(config))
     predictor_.emplace(config);
-  loading_.push_back(row(LoadingPhase::tilted, 0, at_rest_.tractions));
+  loading_.push_back(row(LoadingPhase::tilted, 0, 0, at_rest_.tractions));
   add_state(at_rest_, loading_.back());
-}
-
-double Sequence::time_s(double shear_m) const {
-  return shear_m / top_speed_m_per_s(config_);
 }
 
 void Sequence::add_state(const statics::Equilibrium& state, LoadingRow& row) const {
@@ -90,14 +87,15 @@ void Sequence::add_state(const statics::Equilibrium& state, LoadingRow& row) con
   row.shear_height_m = statics_.shear_height_m(state);
 }
 
-LoadingRow Sequence::row(LoadingPhase phase, double shear_m, const record::StaticState& tractions) const {
+LoadingRow Sequence::row(LoadingPhase phase, double time_s, double shear_m,
+                         const record::StaticState& tractions) const {
   LoadingRow row = loading_.empty() ? LoadingRow{} : loading_.back();
   row.phase = phase;
   const bool is_of_event = phase == LoadingPhase::event_begins || phase == LoadingPhase::slip_ends ||
                            phase == LoadingPhase::at_rest;  // not yet among them
   row.n_events = static_cast<std::int32_t>(events_.size()) + (is_of_event ? 1 : 0);
   row.shear_m = shear_m;
-  row.time_s = time_s(shear_m);
+  row.time_s = time_s;
   row.energies.time_s = row.time_s;
   row.energies.kinetic = 0;
   row.fastest_slip_rate_m_per_s = 0;
@@ -127,7 +125,8 @@ std::string Sequence::end() const {
 }
 
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
-  auto loaded = row(phase, state.shear_m + held_.moved_m, state.tractions);
+  const double time = phase == LoadingPhase::loaded ? path_.end_s() : time_s(state.shear_m);
+  auto loaded = row(phase, time, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
   add_state(state, loaded);
   loading_.push_back(loaded);
@@ -137,7 +136,7 @@ void Sequence::begin_slow_slip() {
   const auto model = input::contact_model(config_, interface_x_m(initial_.mesh));
   interface::QuasiDynamicFriction friction(model, initial_.tributary_m.size(),
                                            stability::radiation_damping_Pa_s_per_m(bodies_of(config_)));
-  held_ = {0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states(), {}};
+  held_ = {0, 0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states(), {}};
   slow_ = std::make_unique<motion::QuasiDynamicSlip>(statics_, std::move(friction), initial_.tributary_m,
                                                      top_speed_m_per_s(config_));
 }
@@ -169,10 +168,10 @@ void Sequence::heal_to_critical() {
   // From below: what mu_s has grown to at a shear is reached at a later one, until they meet.
   constexpr double accuracy = 1e-10;
   constexpr int most = 1000;
-  const double end_m = config_.sequence.end_s * top_speed_m_per_s(config_) - held_.moved_m;
+  const double end_m = path_.shear_m(path_.end_s()) - held_.moved_m;
   double shear_m = at_rest_.shear_m;
   for (int i = 0; i < most && shear_m < end_m; ++i) {
-    heal_until(time_s(shear_m + held_.moved_m));
+    heal_until(time_s(shear_m));
     const double critical_m = statics_.shear_to(1).shear_m;
     if (critical_m - shear_m <= accuracy * std::abs(critical_m + held_.moved_m)) return;
     shear_m = critical_m;
@@ -180,7 +179,7 @@ void Sequence::heal_to_critical() {
   if (shear_m < end_m)
     throw UserError("{} heals the interface faster than the load grows; reduce it, or raise {}",
                     Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_over_c_L"));
-  heal_until(config_.sequence.end_s);
+  heal_until(path_.end_s());
 }
 
 bool Sequence::stick_to_next() {
@@ -197,9 +196,8 @@ bool Sequence::stick_to_next() {
   initial_.critical_shear_m = critical.shear_m + held_.moved_m;
   initial_.common = at_share(1 - margin);
   initial_.spontaneous = at_share(1 + margin);
-  const double end_s = config_.sequence.end_s;
-  if (time_s(initial_.spontaneous.shear_m + held_.moved_m) > end_s) {
-    const double end_m = end_s * top_speed_m_per_s(config_) - held_.moved_m;
+  if (time_s(initial_.spontaneous.shear_m) > path_.end_s()) {
+    const double end_m = path_.shear_m(path_.end_s()) - held_.moved_m;
     load_to(LoadingPhase::loaded, statics_.shear_by(std::max(at_rest_.shear_m, end_m)));
     return false;
   }
@@ -219,7 +217,7 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
   const auto& state = slow_->state();
   const auto& works = slow_->works();
   const auto equilibrium = slid_to(state, {});
-  auto now = row(phase, state.shear_m + held_.moved_m, equilibrium.tractions);
+  auto now = row(phase, state.time_s, state.shear_m + held_.moved_m, equilibrium.tractions);
   now.energies = from.energies;
   now.energies.time_s = now.time_s;
   now.energies.kinetic = 0;
@@ -233,12 +231,13 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
 }
 
 bool Sequence::slip_to_next(const SlowRows& slow_rows) {
-  // Rows of the loading are as far apart as e-folds of the fastest slip rate, those of the interface steps.
+  // Rows of the loading come where the fastest slip rate has doubled or halved, those of the interface by
+  // steps.
   constexpr double row_factor = 2;
   constexpr std::int64_t steps_per_row = 4;
   const auto from = loading_.back();
   const auto& state = slow_->state();
-  double row_rate_m_per_s = 0, last_row_s = -std::numeric_limits<double>::infinity();
+  double row_rate_m_per_s = 0, last_row_s = -infinity;
   const auto u_tilted = relative(initial_, statics_.tilted());
   const auto give_row = [&] {
     if (std::exchange(last_row_s, state.time_s) == state.time_s) return;  // the end is such a step, too
@@ -248,7 +247,7 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += held_.moved_m - u_tilted.x_m[k];
     slow_rows(row);
   };
-  slow_->start(time_s(held_.shear_m + held_.moved_m), held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
+  slow_->start(held_.time_s, held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
   const auto n_before = slow_->n_steps();
   give_row();
   const auto after_step = [&] {
@@ -261,8 +260,12 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     }
     return true;
   };
-  const bool begins =
-      slow_->slip_until(config_.sequence.end_s, input::inertia_slip_rate_m_per_s(config_), after_step);
+  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config_);
+  bool begins = false;
+  while (!begins && state.time_s < path_.end_s()) {
+    slow_->set_edge_speed(path_.speed_m_per_s(state.time_s, state.shear_m + held_.moved_m));
+    begins = slow_->slip_until(path_.part_end_s(state.time_s), rate_m_per_s, after_step);
+  }
   give_row();
   loading_.push_back(slow_row(begins ? LoadingPhase::event_begins : LoadingPhase::loaded, from));
   if (!begins) return false;
@@ -299,7 +302,8 @@ void Sequence::take(const Result& result) {
   for (double& u_x_m : held_.u_x_m) u_x_m -= mean_m;
   held_.moved_m += mean_m;
   held_.shear_m = shear_m - held_.moved_m;
-  auto ends = row(LoadingPhase::slip_ends, shear_m, tractions_at_end);
+  held_.time_s = begins.time_s + (top_speed_in_event_m_per_s(config_) > 0 ? event.time_s : 0);
+  auto ends = row(LoadingPhase::slip_ends, held_.time_s, shear_m, tractions_at_end);
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
   ends.energies.kinetic = last.kinetic;
@@ -311,9 +315,9 @@ void Sequence::take(const Result& result) {
 
   if (slow_) held_.psi = row_at_end.law_states.front();
   if (!held_.rests_since_s.empty())
-    for (const auto& onset : event.record.onsets) held_.rests_since_s[onset.node] = time_s(shear_m);
+    for (const auto& onset : event.record.onsets) held_.rests_since_s[onset.node] = held_.time_s;
   rest();
-  auto rests = row(LoadingPhase::at_rest, shear_m, at_rest_.tractions);
+  auto rests = row(LoadingPhase::at_rest, held_.time_s, shear_m, at_rest_.tractions);
   add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
   loading_.push_back(rests);
@@ -405,8 +409,8 @@ void Sequence::predict(record::SequenceEvent& event) {
 }
 
 void Sequence::serialize(StateArchive& archive) {
-  archive(held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, held_.psi, held_.rests_since_s, loading_,
-          events_);
+  archive(held_.time_s, held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, held_.psi,
+          held_.rests_since_s, loading_, events_);
   if (!archive.is_loading()) return;
   const std::size_t n = initial_.tributary_m.size();
   const auto are_finite = [](const std::vector<double>& values) {
@@ -414,7 +418,7 @@ void Sequence::serialize(StateArchive& archive) {
   };
   require_possible(!events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n &&
                        are_finite(held_.u_x_m) && std::isfinite(held_.shear_m) &&
-                       std::isfinite(held_.moved_m) &&
+                       std::isfinite(held_.time_s) && std::isfinite(held_.moved_m) &&
                        std::ranges::max(held_.contact) <= statics::Contact::open &&
                        held_.rests_since_s.size() == (input::heals(config_) ? n : 0) &&
                        are_finite(held_.rests_since_s) && held_.psi.size() == (slow_ ? n : 0) &&

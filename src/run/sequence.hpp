@@ -11,6 +11,7 @@
 #include "record/sequence.hpp"
 #include "run/fracture.hpp"
 #include "run/initial_state.hpp"
+#include "run/loading_path.hpp"
 #include "run/run.hpp"
 #include "solid/operator.hpp"
 
@@ -55,6 +56,7 @@ class Sequence {
   /// Where nodes in contact stick. The plate is where its mean slip has moved it: that strains nothing, and
   /// would take digits from what does.
   struct Held {
+    double time_s = 0;  ///< since the tilt
     double moved_m = 0;
     double shear_m = 0;  ///< of the top edge beyond that
     std::vector<statics::Contact> contact;
@@ -79,13 +81,14 @@ class Sequence {
 
   /// Finds the equilibrium of held_.
   void rest();
-  double time_s(double shear_m) const;
+  /// At which the loading brings about a shear beyond held_.moved_m.
+  double time_s(double shear_m) const { return path_.time_s(shear_m + held_.moved_m, held_.time_s); }
   /// Adds the row of an equilibrium after the last one.
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
   /// What the tractions do not tell. @param state  as found: without what the events have moved the plate
   void add_state(const statics::Equilibrium& state, record::LoadingRow& row) const;
   /// With the works so far. @param shear_m  since the tilt
-  record::LoadingRow row(record::LoadingPhase phase, double shear_m,
+  record::LoadingRow row(record::LoadingPhase phase, double time_s, double shear_m,
                          const record::StaticState& tractions) const;
   /// By the state in which it begins.
   void predict(record::SequenceEvent& event);
@@ -94,6 +97,7 @@ class Sequence {
 
   input::Case config_;
   std::optional<input::Case> event_config_;  ///< where mu_s grows at rest
+  LoadingPath path_;
   InitialState initial_;
   statics::Statics statics_;
   solid::Operator plate_;

@@ -93,7 +93,7 @@ auto members(const Case& c) {
   return std::tuple(title, members(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x), tip,
                     members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
-                    members<6>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
+                    members<7>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
                     members<4>(probes));
 }
 
@@ -248,11 +248,21 @@ TEST(Schema, SequencesReadBackFromToml) {
   sequence.loading.shear_speed_over_c_L = 1e-8;
   sequence.time.end_s = 1e-2;
   sequence.time.quiet_s = 1e-3;
-  sequence.sequence = {7, 400, true, 0.02, 3, {}};
+  sequence.sequence = {7, 400, true, {{2, 3}, {1e-6, 1e-6}}, 0.02, 3, {}};
   expect_equal(parsed(to_toml(sequence)), sequence);
   sequence.friction = interface::RateAndStateAging {};
-  sequence.sequence = {7, 400, true, 0, 1, 2e-3};
+  sequence.sequence = {7, 400, true, {}, 0, 1, 2e-3};
   expect_equal(parsed(to_toml(sequence)), sequence);
+}
+
+TEST(Schema, LoadingPathsRiseInTime) {
+  const auto error = [](const char* times, const char* shears) {
+    return parse_error(
+        fmt::format("sequence.max_events = 2\nsequence.times_s = {}\nsequence.shears_m = {}", times, shears));
+  };
+  EXPECT_THAT(error("[1.0, 2.0]", "[1e-6]"), HasSubstr("one displacement per time"));
+  EXPECT_THAT(error("[2.0, 2.0]", "[1e-6, 2e-6]"), HasSubstr("sequence.times_s must rise"));
+  EXPECT_THAT(error("[1.0, 2.0]", "[2e-6, 1e-6]"), HasSubstr("sequence.shears_m must not fall"));
 }
 
 TEST(Schema, SlowSlipBetweenEventsNeedsAFactorisationAndAPressure) {

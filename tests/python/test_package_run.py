@@ -556,14 +556,6 @@ pusher_to_m = 16e-3
 shear_stiffness_Pa = 1e9
 normal_stiffness_Pa = 0.0
 """,
-    "slow": """
-plate.element_size_m = 4e-3
-event.kind = "spontaneous"
-friction.law = "rate_and_state_aging"
-[sequence]
-max_events = 2
-inertia_slip_rate_m_per_s = 1e-3
-""",
     "slow slip": """
 [plate]
 element_size_m = 4e-3
@@ -582,6 +574,8 @@ kind = "spontaneous"
 max_events = 2
 end_s = 1.0
 inertia_slip_rate_m_per_s = 5e-3
+times_s = [0.5, 2.0]
+shears_m = [0.0, 1e-6]
 """,
 }
 

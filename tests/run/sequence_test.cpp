@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -501,6 +502,58 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
   Sequence strong_at_once(config, test::go_on);
   strong_at_once.next();
   EXPECT_LT(strong_at_once.loading().back().time_s, sequence.events().front().begin_s);
+}
+
+TEST(Sequence, AHoldDelaysWhatFollows) {
+  auto config = sequence_case(3);
+  Sequence straight(config, test::go_on);
+  while (straight.end().empty()) run_next(straight, config);
+  const double v = top_speed_m_per_s(config), first_s = straight.events()[0].begin_s;
+  const double hold_from_s = 0.5 * first_s, hold_s = 1000;
+  config.sequence.path = {{hold_from_s, hold_from_s + hold_s, 1e6 + hold_s},
+                          {v * hold_from_s, v * hold_from_s, v * 1e6}};
+  Sequence held(config, test::go_on);
+  while (held.end().empty()) run_next(held, config);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(held.events()[k].shear_m, straight.events()[k].shear_m, 1e-12) << k;
+    EXPECT_NEAR(held.events()[k].begin_s, straight.events()[k].begin_s + hold_s, 1e-3) << k;
+  }
+  config.sequence.max_events = 100;
+  config.sequence.path = {{hold_from_s}, {v * hold_from_s}};
+  Sequence ended(config, test::go_on);
+  EXPECT_EQ(ended.next(), nullptr);
+  EXPECT_DOUBLE_EQ(ended.loading().back().time_s, hold_from_s);
+  EXPECT_DOUBLE_EQ(ended.loading().back().shear_m, v * hold_from_s);
+}
+
+/// Slide, hold, slide: the force relaxes as slip goes on, and the surfaces have aged for what follows.
+TEST(Sequence, InAHoldTheForceRelaxesUnderALawWithAState) {
+  auto config = rate_and_state_case(2);
+  const double v = top_speed_m_per_s(config);
+  Sequence straight(config, test::go_on);
+  straight.next();
+  const auto first = straight.loading().back();
+  const double hold_from_s = 0.9 * first.time_s, hold_s = 100;
+  config.sequence.path = {{hold_from_s, hold_from_s + hold_s, hold_from_s + 2 * hold_s},
+                          {v * hold_from_s, v * hold_from_s, v * (hold_from_s + hold_s)}};
+  Sequence held(config, test::go_on);
+  // Mean tractions in the hold, as it begins and as it ends.
+  double first_Pa = 0, last_Pa = 0;
+  const auto* initial = held.next([&](const record::History& row) {
+    const double time_s = row.time_s.front(), ends_Pa = 0.5 * (row.t_Pa.front() + row.t_Pa.back());
+    const double sum_Pa = std::reduce(row.t_Pa.begin(), row.t_Pa.end()) - ends_Pa;
+    if (time_s < hold_from_s || time_s > hold_from_s + hold_s) return;
+    if (first_Pa == 0) first_Pa = sum_Pa;
+    last_Pa = sum_Pa;
+  });
+  ASSERT_NE(initial, nullptr);
+  const auto& rows = held.loading();
+  EXPECT_LT(last_Pa, (1 - 3e-5) * first_Pa);
+  EXPECT_GT(rows.back().time_s, hold_from_s + hold_s);
+  EXPECT_GT(rows.back().shear_over_normal, first.shear_over_normal + 1e-4);  // the aged surfaces are stronger
+  double largest = 0;
+  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.top_work));
+  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-10 * largest);
 }
 
 TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
