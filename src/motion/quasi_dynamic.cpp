@@ -72,6 +72,10 @@ bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
         accuracy * std::ranges::min(friction_.d_c_m()) / std::max(now_.fastest_m_per_s(), slowest_m_per_s);
   while (now_.time_s < end_s) {
     if (now_.fastest_m_per_s() >= slip_rate_m_per_s) return true;
+    if (now_.time_s + next_dt_s_ == now_.time_s)
+      throw UserError(
+          "{:.6g} s after the tilt slow slip changes faster than its time can be told; choose a smaller {}",
+          now_.time_s, Key("sequence.inertia_slip_rate_m_per_s"));
     const double rest_s = end_s - now_.time_s;
     const bool is_last = next_dt_s_ >= rest_s;
     const double taken_s = try_step(std::min(next_dt_s_, rest_s));

@@ -291,12 +291,14 @@ void Sequence::take(const Result& result) {
   const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
   const auto u = relative(initial_, initial_.spontaneous);
   const double shear_m = begins.shear_m + top_speed_in_event_m_per_s(config_) * event.time_s;
+  const double since_row_s = event.time_s - row_at_end.time_s.front();
   held_.contact.clear();
   held_.u_x_m.clear();
   double mean_m = 0;
   for (std::size_t k = 0; k < u.x_m.size(); ++k) {
     held_.contact.push_back(row_at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
     held_.u_x_m.push_back(u.x_m[k] + row_at_end.slip_m[k]);
+    if (slow_) held_.u_x_m.back() += since_row_s * row_at_end.slip_rate_m_per_s[k];
     mean_m += held_.u_x_m.back() / static_cast<double>(u.x_m.size());
   }
   for (double& u_x_m : held_.u_x_m) u_x_m -= mean_m;
