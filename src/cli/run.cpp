@@ -208,7 +208,8 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
             });
   if (options.quiet) return;
   const auto& strongest = record::strongest(finished.loading);
-  print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal, strongest.n_events);
+  print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal,
+        strongest.n_events + (is_of_event(strongest.phase) ? 0 : 1));
   const auto n_events = finished.events.size();
   print("ended after {} event{}: {}\n", n_events, n_events == 1 ? "" : "s", finished.end);
   const auto& events = finished.events;

@@ -26,6 +26,12 @@ inline constexpr const char* name(LoadingPhase phase) {
   return names[static_cast<std::size_t>(phase)];
 }
 
+/// Whether it begins, ends or follows an event, or else lies before the next one.
+inline constexpr bool is_of_event(LoadingPhase phase) {
+  return phase == LoadingPhase::event_begins || phase == LoadingPhase::slip_ends ||
+         phase == LoadingPhase::at_rest;
+}
+
 /// Loads of a sequence at one instant, per unit thickness. Forces are those of the interface on the plate.
 struct LoadingRow {
   LoadingPhase phase = LoadingPhase::tilted;

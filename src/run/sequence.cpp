@@ -91,9 +91,8 @@ LoadingRow Sequence::row(LoadingPhase phase, double time_s, double shear_m,
                          const record::StaticState& tractions) const {
   LoadingRow row = loading_.empty() ? LoadingRow{} : loading_.back();
   row.phase = phase;
-  const bool is_of_event = phase == LoadingPhase::event_begins || phase == LoadingPhase::slip_ends ||
-                           phase == LoadingPhase::at_rest;  // not yet among them
-  row.n_events = static_cast<std::int32_t>(events_.size()) + (is_of_event ? 1 : 0);
+  row.n_events =
+      static_cast<std::int32_t>(events_.size()) + (is_of_event(phase) ? 1 : 0);  // not yet among them
   row.shear_m = shear_m;
   row.time_s = time_s;
   row.energies.time_s = row.time_s;

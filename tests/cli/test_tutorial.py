@@ -72,7 +72,7 @@ def test_all_of_it_runs(shell):
             (shell.folder / block.file).write_text(block.text)
         elif block.language == "sh" and not block.left_out:
             require_done(shell(block.text))
-    for picture in ("first", "picture", "aluminium", "tail", "fine/figures/energy_balance"):
+    for picture in ("first", "picture", "aluminium", "tail", "block", "fine/figures/energy_balance"):
         assert (shell.folder / f"{picture}.png").stat().st_size > 10_000
     runs = ("first", "aluminium", "stuck", "tail", "fine")
     reached = {name: read_run(shell.folder / name) for name in runs}

@@ -44,7 +44,7 @@ PHASES = {
     "slip_ends": "where event {} ends",
     "at_rest": "at rest behind event {}",
     "loaded": "at the end of the loading",
-    "creeps": "in slow slip behind event {}",
+    "creeps": "in slow slip before event {}",
 }
 RATIO = "F<sub>S</sub>/F<sub>N</sub>"
 
@@ -73,7 +73,8 @@ def state_words(place: Place, key: str) -> str:
         return "not known yet"
     ratio, *rest, event = (number(file, info, f"{key}.{name}") for name in names)
     shear, normal, time, moved = (quantity(v, unit_of(n)) for n, v in zip(names[1:5], rest, strict=True))
-    phase = PHASES.get(str(info[key].get("phase")), "").format(round(event))
+    phase = str(info[key].get("phase"))
+    phase = PHASES.get(phase, "").format(round(event) + (phase == "creeps"))
     return f"{ratio:.4f}, {words(phase)}: {shear} over {normal}, at {time} and a displacement of {moved}"
 
 
