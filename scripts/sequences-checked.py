@@ -40,7 +40,8 @@ COARSE: dict[str, Any] = {
     "loading.critical_margin": 0.02,
 }
 LEAST_SLIP_M = 1e-6
-DAMPING_S = (0.08e-6, 6.4e-6)  # on the coarse mesh
+SMALL = 0.1  # of the fracture energy, with which a crack crosses what would stop it
+DAMPING_S = (0.08e-6, 6.4e-6, 12.8e-6)  # on the coarse mesh
 
 
 @dataclass
@@ -51,6 +52,7 @@ class Precursors:
     sequence: slipfront.OpenSequence
     found_m: np.ndarray  # right end
     predicted_m: np.ndarray
+    farthest_m: np.ndarray  # place where the crack's G at rest reaches its fracture energy
     zone_m: np.ndarray  # process zone at rest
     speed: np.ndarray  # over c_S
     force: np.ndarray  # over the normal force
@@ -61,18 +63,43 @@ class Precursors:
     def beyond(self) -> np.ndarray:
         return (self.found_m - self.predicted_m) / self.zone_m
 
+    @property
+    def beyond_farthest(self) -> np.ndarray:
+        return (self.found_m - self.farthest_m) / self.zone_m
+
+
+def farthest(run: slipfront.OpenRun, at_x_m: float, predicted_m: float) -> float:
+    """Last place to the right where G of a crack at rest is its fracture energy, over whatever stops it."""
+    friction, tractions = run.case["friction"], run.tractions
+    weakening = friction["mu_s"] - friction["mu_k"]
+    energy = 0.5 * weakening * friction["d_c_m"] * tractions.p_s_Pa.to_numpy()
+    crack = slipfront.predict_fronts(
+        run,
+        at_x_m=at_x_m,
+        fracture_energy_J_per_m2=SMALL * float(np.median(energy)),
+        residual_coefficient=friction["mu_k"],
+    )
+    right = crack.isel(point=(crack.direction == 1).to_numpy())
+    x = right.x_m.to_numpy()
+    grows = right.G_static_J_per_m2.to_numpy() >= np.interp(x, tractions.x_m.to_numpy(), energy)
+    return float(np.fmax.reduce([predicted_m, *x[grows]]))
+
 
 def precursors(name: str, changes: dict[str, Any], folder: Path) -> Precursors:
     sequence = sequence_of(PUSHED, {"loading.normal_stiffness_Pa": 0.0} | changes, folder)
     events = sequence.events
     counted = ((events.max_slip_m > LEAST_SLIP_M) & (events.is_global == 0)).to_numpy()
     over = (events.length_m / events.nucleation_length_m).to_numpy()
-    infos = [sequence.runs[k].info for k in np.flatnonzero(counted)]
+    begins, predicted = events.begin_x_m.to_numpy(), events.predicted_to_x_m.to_numpy()
+    infos = [sequence.runs[k].info for k in map(int, np.flatnonzero(counted))]
     return Precursors(
         name,
         sequence,
         events.to_x_m.to_numpy()[counted],
-        events.predicted_to_x_m.to_numpy()[counted],
+        predicted[counted],
+        np.array(
+            [farthest(sequence.runs[k], begins[k], predicted[k]) for k in map(int, np.flatnonzero(counted))]
+        ),
         np.array([i["rupture"]["process_zone_m"] for i in infos]),
         events.median_speed_m_per_s.to_numpy()[counted]
         / np.array([i["wave_speeds"]["c_S_m_per_s"] for i in infos]),
@@ -108,18 +135,23 @@ def number(value: float, form: str) -> str:
 
 def precursor_table(found: list[Precursors]) -> str:
     text = (
-        "| h (mm) | d_c (um) | damping (us) | process zone (mm) | precursors | "
-        "found beyond predicted, in zones, 1st to 6th | median of later ones | speed over c_S, 1st to 6th | later "
+        "| h (mm) | d_c (um) | damping (us) | process zone (mm) | precursors "
+        "| beyond the end predicted, in zones: 1st to 6th | later, median "
+        "| beyond the farthest place: 1st to 6th | later, median "
+        "| speed over c_S: 1st to 6th | later, median "
         "| slip over the nucleation length: longest that stops, shortest of a precursor |\n"
-        + "|---" * 10
+        + "|---" * 12
         + "|\n"
     )
     for p in found:
-        beyond = ", ".join(number(v, ".1f") for v in p.beyond[:6])
-        speeds = ", ".join(number(v, ".2f") for v in p.speed[:6])
+
+        def columns(values: np.ndarray, form: str) -> str:
+            first = ", ".join(number(v, form) for v in values[:6])
+            return f"{first} | {np.nanmedian(values[6:]):{form}}"
+
         text += (
-            f"| {p.name} | {1e3 * p.zone_m[0]:.1f} | {len(p.found_m)} | {beyond} "
-            f"| {np.nanmedian(p.beyond[6:]):.1f} | {speeds} | {np.nanmedian(p.speed[6:]):.2f} "
+            f"| {p.name} | {1e3 * p.zone_m[0]:.1f} | {len(p.found_m)} | {columns(p.beyond, '.1f')} "
+            f"| {columns(p.beyond_farthest, '.1f')} | {columns(p.speed, '.2f')} "
             f"| {p.stopped:.2f}, {p.ran:.2f} |\n"
         )
     return text
@@ -376,7 +408,8 @@ def draw(pushed: list[Precursors], slow: list[Nucleation], loaded: list[Loaded],
             name = p.name.replace(" | ", ", ")
             ends.plot(p.force, 1e3 * p.found_m, marker="o", ms=2, label=name, **marker)
             ends.plot(p.force, 1e3 * p.predicted_m, "_", ms=5, color=marker["color"])
-            beyond.plot(p.speed, p.beyond, "o", ms=2, color=marker["color"])
+            beyond.plot(p.speed, p.beyond, "o", ms=2.5, color=marker["color"])
+            beyond.plot(p.speed, p.beyond_farthest, "o", ms=2.5, mfc="none", mew=0.5, color=marker["color"])
         beyond.axhline(2, color="0.6", lw=0.6)
         ends.set(xlabel="F_S/F_N", ylabel="right end (mm), predicted: ticks", title="(a)")
         ends.legend(fontsize=5, title="h (mm), d_c (um), damping (us)", title_fontsize=5)
