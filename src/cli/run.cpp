@@ -185,11 +185,12 @@ run::Finished run_or_go_on(const RunArguments& options, results::ResultFolder& f
 }
 
 void print_event(std::size_t number, const record::SequenceEvent& e) {
-  print(
-      "event {}: at {:.4g} s, x = {:.4f} to {:.4f} m{}, mean slip {:.3g} m, F_S/F_N {:.4f} to {:.4f}, {} "
-      "{}\n",
-      number, e.begin_s, e.from_x_m, e.to_x_m, e.is_global != 0 ? " (global)" : "", e.mean_slip_m,
-      e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
+  const auto extent = e.length_m > 0
+                          ? fmt::format("x = {:.4f} to {:.4f} m{}, mean slip {:.3g} m", e.from_x_m, e.to_x_m,
+                                        e.is_global != 0 ? " (global)" : "", e.mean_slip_m)
+                          : "nowhere faster than a front's tip";
+  print("event {}: at {:.6g} s, {}, F_S/F_N {:.4f} to {:.4f}, {} {}\n", number, e.begin_s, extent,
+        e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
 }
 
 void run_sequence(const RunArguments& options, results::ResultFolder& folder,

@@ -321,6 +321,10 @@ void Sequence::take(const Result& result) {
   auto rests = row(LoadingPhase::at_rest, held_.time_s, shear_m, at_rest_.tractions);
   add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
+  for (std::size_t k = 0; slow_ && k < row_at_end.slip_rate_m_per_s.size(); ++k)
+    if (row_at_end.p_Pa[k] > 0)
+      rests.fastest_slip_rate_m_per_s =
+          std::max(rests.fastest_slip_rate_m_per_s, std::abs(row_at_end.slip_rate_m_per_s[k]));
   loading_.push_back(rests);
   add_event(result, begins, rests, at_rest_.tractions);
 }

@@ -79,7 +79,8 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
       done_(sequence_->events().size(), sequence_->events().back());
     }
     if (end.empty())
-      end = fmt::format("no event begins before sequence.end_s = {:g} s", config_.sequence.end_s);
+      end = fmt::format("no event begins before the loading ends, at {:g} s",
+                        sequence_->loading().back().time_s);
     write_case(folder_.unfinished(), config_);
     write(end, {"complete", "", head_.sessions});
     folder_.publish();
