@@ -205,7 +205,8 @@ class OpenSequence:
         last event too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
         folder, n_events = self.folder, self.events.sizes["event"]
         behind_the_last = self.status == "complete" and exists(folder / f"slow/{n_events + 1:04}")
-        n_phases = n_events + behind_the_last if exists(folder / "slow") else 0
+        listed = any(name.startswith("slow/") for name in read_list(folder) or ())
+        n_phases = n_events + behind_the_last if listed or exists(folder / "slow") else 0
         return SlowSlip(folder, n_phases, self._kept, self._attributes())
 
     @cached_property

@@ -437,6 +437,10 @@ void check_sequence(const Case& config) {
     throw UserError(
         "{} = iterative does not condense the interface for slow slip between events; choose direct or auto",
         Key("loading.solver"));
+  if (is_slow(config) && interface::static_coefficient(config.friction) <= 0)
+    throw UserError("{}: the coefficient of steady sliding at {} is {:.4g}; it must be above 0",
+                    Key("friction.f0"), Key("friction.V_i_m_per_s"),
+                    interface::static_coefficient(config.friction));
   if (is_slow(config) && !interface::follows_pressure(config.regularisation))
     throw UserError(
         "{} = initial_pressure leaves no pressure to slow slip between events; choose none or pressure",

@@ -334,6 +334,7 @@ void Sequence::rest() {
     at_rest_ = statics_.slid_to(held_.contact, held_.u_x_m, {}, held_.shear_m);
     return;
   }
+  if (input::heals(config_)) heal_until(held_.time_s);
   statics_.hold(held_.contact, held_.u_x_m);
   at_rest_ = statics_.shear_by(held_.shear_m);
 }

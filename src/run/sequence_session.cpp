@@ -55,6 +55,9 @@ class SequenceSession {
   std::filesystem::path event_dir(std::size_t k) const {
     return results::event_folder(folder_.unfinished(), k);
   }
+  std::filesystem::path slow_history(std::size_t k) const {
+    return results::slow_folder(folder_.unfinished(), k) / results::history_file;
+  }
 
   results::ResultFolder& folder_;
   const input::Case& config_;
@@ -65,7 +68,8 @@ class SequenceSession {
   bool resumed_;
   CheckpointHead head_;
   std::unique_ptr<Sequence> sequence_;
-  std::vector<std::string> sums_;  ///< of the lists of checksums of the events that are done
+  std::vector<std::string> sums_;       ///< of the lists of checksums of the events that are done
+  std::vector<std::string> slow_sums_;  ///< of the histories of slow slip before them
 };
 
 FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
@@ -108,10 +112,11 @@ void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
       *options_.processes);
   if (kept == nullptr) return;
   try {
-    kept->rest(sums_);
+    kept->rest(sums_, slow_sums_);
     sequence_->serialize(kept->rest);
     kept->rest.close();
-    require_possible(sums_.size() == sequence_->events().size(), "events");
+    const std::size_t n_slow = input::is_slow(config_) ? sums_.size() : 0;
+    require_possible(sums_.size() == sequence_->events().size() && slow_sums_.size() == n_slow, "events");
   } catch (const StateError& error) {
     throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
   }
@@ -126,6 +131,11 @@ void SequenceSession::require_events_unchanged() const {
       throw UserError("{}: was changed since it was finished; restore it, or start a new run", dir.string());
     files::require_intact(dir);
   }
+  for (std::size_t k = 0; k < slow_sums_.size(); ++k) {
+    const auto file = slow_history(k + 1);
+    if (!files::is_there(file) || files::sha256_of_file(file) != slow_sums_[k])
+      throw UserError("{}: was changed since it was finished; restore it, or start a new run", file.string());
+  }
 }
 
 bool SequenceSession::run_event() {
@@ -139,9 +149,11 @@ bool SequenceSession::run_event() {
   options_.initial_state = [initial] { return *initial; };
   const auto dir = event_dir(sequence_->events().size() + 1);
   results::ResultFolder event_folder(dir, event_work, &folder_);
-  const auto finished = event_folder.has_unfinished()
-                            ? resume(event_folder, nullptr, options_, hooks)
-                            : run_into(event_folder, sequence_->config_of_event(), options_, hooks);
+  // A case file comes last of what a run begins with.
+  const bool goes_on =
+      event_folder.has_unfinished() && files::is_there(event_folder.unfinished() / case_file);
+  const auto finished = goes_on ? resume(event_folder, nullptr, options_, hooks)
+                                : run_into(event_folder, sequence_->config_of_event(), options_, hooks);
   const auto& event = finished.result.event;
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
@@ -153,6 +165,7 @@ bool SequenceSession::run_event() {
                     Key("material.stiffness_damping_s"), what_was_kept(folder_));
   sequence_->take(finished.result);
   sums_.push_back(files::sha256_of_file(dir / files::checksum_list));
+  if (input::is_slow(config_)) slow_sums_.push_back(files::sha256_of_file(slow_history(sums_.size())));
   return true;
 }
 
@@ -180,7 +193,7 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
 
 void SequenceSession::keep() {
   checkpoints_.keep(head_, [&](results::OutputArchive& archive) {
-    archive(sums_);
+    archive(sums_, slow_sums_);
     sequence_->serialize(archive);
   });
 }

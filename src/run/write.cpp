@@ -333,10 +333,10 @@ results::SnapshotContents snapshot_contents(const input::Case& config, const Sna
 }
 
 void write_case(const std::filesystem::path& dir, const input::Case& config) {
-  files::write_text(dir / case_file, resolved_text(config));
   if (!config.prestress.file.empty()) files::write_text(dir / prestress_file, config.prestress.table.text);
   if (!config.friction_along_x.file.empty())
     files::write_text(dir / friction_file, config.friction_along_x.table.text);
+  files::write_text(dir / case_file, resolved_text(config));  // last, for those who go on with the work
 }
 
 void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial) {

@@ -15,6 +15,7 @@
 #include "cases.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/friction/rate_and_state.hpp"
+#include "interface/friction/slip_weakening.hpp"
 #include "results/folder.hpp"
 #include "run/choices.hpp"
 #include "run/sequence_session.hpp"
@@ -328,6 +329,10 @@ TEST(SequenceInAFolder, IsTheSameWhereverItWasStopped) {
 
 TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedWhileItHeals) {
   auto config = sequence_case(3);
+  config.plate.corner = mesh::Corner::none;  // where edges slip at rest
+  config.loading.mean_pressure_Pa = 5e6;
+  config.material.stiffness_damping_s = 2e-6;
+  config.friction = interface::SlipWeakeningHealing { .mu_s = 0.5, .mu_k = 0.45, .d_c_m = 2e-6 };
   config.sequence.healing_per_e_fold = 0.02;
   expect_same_wherever_stopped(config, 3 + 3 * 7);  // each event has its friction.csv
 }
@@ -348,6 +353,32 @@ TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
                               [&](std::size_t number, const record::SequenceEvent&) { stop = number == 2; }),
                Interrupted);
   stop = false;
+  resume_sequence_in(dir);
+  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+}
+
+TEST(SequenceInAFolder, SlowSlipThatWasChangedIsRefused) {
+  const test::TemporaryFolder folder;
+  const auto dir = folder / "out", slow = dir / "unfinished" / "slow" / "0001" / "interface.h5";
+  EXPECT_THROW(start_sequence(dir, rate_and_state_case(2), stopping_at("event 2", 10)), Interrupted);
+  const auto content = test::read_file(slow);
+  test::write_file(slow, content.substr(0, content.size() / 2));
+  EXPECT_THAT(error_of([&] { resume_sequence_in(dir); }), HasSubstr("was changed since it was finished"));
+  fs::remove(slow);
+  EXPECT_THAT(error_of([&] { resume_sequence_in(dir); }), HasSubstr("was changed since it was finished"));
+  test::write_file(slow, content);
+  resume_sequence_in(dir);
+  EXPECT_TRUE(is_complete(dir));
+}
+
+/// As if the program had been killed in between.
+TEST(SequenceInAFolder, AnEventWithoutItsCaseFileYetBeginsAnew) {
+  const test::TemporaryFolder folder;
+  const auto config = sequence_case(2);
+  const auto dir = folder / "out";
+  start_sequence(folder / "whole", config);
+  EXPECT_THROW(start_sequence(dir, config, stopping_at("event 2", 10)), Interrupted);
+  fs::remove(dir / "unfinished" / "events" / "0002" / "unfinished" / "case.resolved.toml");
   resume_sequence_in(dir);
   EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
 }
