@@ -131,7 +131,9 @@ class SlowSlip(Sequence[xr.Dataset]):
         return self._open(files) if isinstance(files, Path) else [self._open(file) for file in files]
 
     def _open(self, file: Path) -> xr.Dataset:
-        return stored_history(result_file(file, self._folder), self._kept, self._attrs)
+        history = stored_history(result_file(file, self._folder), self._kept, self._attrs)
+        history["time_s"].attrs["long_name"] = "time since the tilt"
+        return history
 
 
 class OpenSequence:
