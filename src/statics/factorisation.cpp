@@ -35,10 +35,10 @@ std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
 
 Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top)
     : mesh_(mesh), top_(top) {
-  set_grips();
-  for (const std::size_t c : {0, 1})
-    if (!is_held_along(c)) spring_[c] = material.youngs_modulus_Pa;
   try {
+    set_grips();
+    for (const std::size_t c : {0, 1})
+      if (!is_held_along(c)) spring_[c] = material.youngs_modulus_Pa;
     factorise(material);
   } catch (const std::bad_alloc&) {
     throw UserError("out of memory in the static solution (factorisation); choose a larger {}",
