@@ -12,7 +12,7 @@ namespace slipfront::verification::block_on_spring {
 
 namespace {
 
-constexpr double H_m = 0.1, width_m = 0.03;
+constexpr double H_m = 0.1;
 constexpr double p_Pa = 1e9, mu_s = 0.6, mu_k = 0.4;
 constexpr double drop_Pa = (mu_s - mu_k) * p_Pa;
 /// How fast friction weakens, over the spring's stiffness.
