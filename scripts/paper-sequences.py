@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import matplotlib
 import numpy as np
 import slipfront
-from shared import G_over_Gamma, between_marks, checked, correlation, renew, run, write_figure
+from shared import G_over_Gamma, correlation, renew_from_runs, write_figure
 from slipfront.figures import style
 from slipfront.figures.bases import PAPER
 
@@ -157,22 +155,11 @@ def draw(plates: list[Loaded], picture: Path) -> None:
         write_figure(picture, figure)
 
 
-def renew_page(page: Path, picture: Path, folder: Path | None) -> None:
-    checked(picture)
-    with TemporaryDirectory() as temporary:
-        plates = [loaded(mu_k, page, folder or Path(temporary)) for mu_k in MU_K]
-        draw(plates, picture)
-        renew(page, lambda text: between_marks(page, text, "table", table(plates)))
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("page", type=Path, help="papers/kammer2012/sequences.md")
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--runs", type=Path, help="folder of the two sequences, or for them")
-    options = parser.parse_args()
-    return run(__file__, lambda: renew_page(options.page, options.picture, options.runs))
+def write(page: Path, picture: Path, folder: Path) -> dict[str, str]:
+    plates = [loaded(mu_k, page, folder) for mu_k in MU_K]
+    draw(plates, picture)
+    return {"table": table(plates)}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(renew_from_runs(__file__, __doc__, "papers/kammer2012/sequences.md", write))

@@ -4,18 +4,16 @@ renews table and figure of docs/rigid-block.md."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import matplotlib
 import numpy as np
 import slipfront
 from scipy.integrate import solve_ivp
-from shared import between_marks, checked, renew, run, write_figure
+from shared import renew_from_runs, write_figure
 from slipfront.figures import style
 
 # Low friction on a small block, which nothing shears as it is pressed: it slides as one.
@@ -234,24 +232,11 @@ def draw(found: list[Compared], picture: Path) -> None:
         write_figure(picture, figure)
 
 
-def renew_page(page: Path, picture: Path, folder: Path | None) -> None:
-    checked(picture)
-    with TemporaryDirectory() as temporary:
-        place = folder or Path(temporary)
-        found = compared(place)
-        steady = stable(SOFT[0], place)
-        draw(found, picture)
-        renew(page, lambda text: between_marks(page, text, "table", table(found, steady)))
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("page", type=Path, help="docs/rigid-block.md")
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--runs", type=Path, help="folder for the sequences")
-    options = parser.parse_args()
-    return run(__file__, lambda: renew_page(options.page, options.picture, options.runs))
+def write(_: Path, picture: Path, folder: Path) -> dict[str, str]:
+    found, steady = compared(folder), stable(SOFT[0], folder)
+    draw(found, picture)
+    return {"table": table(found, steady)}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(renew_from_runs(__file__, __doc__, "docs/rigid-block.md", write))

@@ -4,18 +4,16 @@ them; renews tables and picture of docs/sequences-checked.md."""
 
 from __future__ import annotations
 
-import argparse
 import runpy
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib
 import numpy as np
 import slipfront
-from shared import between_marks, checked, renew, run, write_figure
+from shared import renew_from_runs, write_figure
 from slipfront.figures import style
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -433,45 +431,25 @@ def draw(pushed: list[Precursors], slow: list[Nucleation], loaded: list[Loaded],
         write_figure(picture, figure)
 
 
-def renew_page(page: Path, picture: Path, folder: Path | None) -> None:
-    checked(picture)
-    with TemporaryDirectory() as temporary:
-        place = folder or Path(temporary)
-        place.mkdir(parents=True, exist_ok=True)
-        pushed = all_precursors(place)
-        slow = [nucleation(*one, place) for one in NUCLEATIONS]
-        loaded = [
-            one
-            for damping_s, speeds in RAMPS.items()
-            for one in (
-                *(by_sequence(damping_s, margin_m, place) for margin_m in MARGINS_M),
-                *(by_ramp(damping_s, v, place) for v in speeds),
-            )
-        ]
-        draw(pushed, slow, loaded, picture)
-        tables = {
-            "precursors": precursor_table(pushed),
-            "nucleation": nucleation_table(slow),
-            "ramp": ramp_table(loaded),
-            "ledger": ledger_table(pushed, slow, loaded, place),
-        }
-
-        def change(text: str) -> str:
-            for mark, content in tables.items():
-                text = between_marks(page, text, mark, content)
-            return text
-
-        renew(page, change)
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("page", type=Path, help="docs/sequences-checked.md")
-    parser.add_argument("picture", type=Path)
-    parser.add_argument("--runs", type=Path, help="folder for the sequences")
-    options = parser.parse_args()
-    return run(__file__, lambda: renew_page(options.page, options.picture, options.runs))
+def write(_: Path, picture: Path, place: Path) -> dict[str, str]:
+    pushed = all_precursors(place)
+    slow = [nucleation(*one, place) for one in NUCLEATIONS]
+    loaded = [
+        one
+        for damping_s, speeds in RAMPS.items()
+        for one in (
+            *(by_sequence(damping_s, margin_m, place) for margin_m in MARGINS_M),
+            *(by_ramp(damping_s, v, place) for v in speeds),
+        )
+    ]
+    draw(pushed, slow, loaded, picture)
+    return {
+        "precursors": precursor_table(pushed),
+        "nucleation": nucleation_table(slow),
+        "ramp": ramp_table(loaded),
+        "ledger": ledger_table(pushed, slow, loaded, place),
+    }
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(renew_from_runs(__file__, __doc__, "docs/sequences-checked.md", write))

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 __all__ = ["DataError", "checked", "read_text", "write_figure"]  # handed on
@@ -105,18 +106,19 @@ def renew(page: Path, change: Callable[[str], str]) -> None:
     write_pages(page.parent, {page.name: change(read_text(command.replaceable(page)))})
 
 
+def with_tables(page: Path, text: str, contents: dict[str, str]) -> str:
+    """The page's text with its tables replaced, by their marks."""
+    for mark, content in contents.items():
+        text = between_marks(page, text, mark, content)
+    return text
+
+
 def renew_tables(file: Path, page: Path, what: str, tables: Callable[[Any], dict[str, str]]) -> None:
     """Writes a page with its tables, by their marks, made from a file of results."""
     results = read_result(file)
     with expecting(what, file):
         contents = tables(results)
-
-    def change(text: str) -> str:
-        for mark, content in contents.items():
-            text = between_marks(page, text, mark, content)
-        return text
-
-    renew(page, change)
+    renew(page, lambda text: with_tables(page, text, contents))
 
 
 def run(script: str, work: Callable[[], None]) -> int:
@@ -138,3 +140,27 @@ def renew_page(
     parser.add_argument("page", type=Path, help=page)
     options = parser.parse_args()
     return run(script, lambda: write(options.results, options.page))
+
+
+def renew_from_runs(
+    script: str, purpose: str | None, page: str, write: Callable[[Path, Path, Path], dict[str, str]]
+) -> int:
+    """Exit code of a script that runs cases and renews a page and its picture.
+
+    write: draws the picture and returns the page's tables, of the page, the picture and the folder of the
+    runs, which may be there."""
+    parser = argparse.ArgumentParser(description=purpose)
+    parser.add_argument("page", type=Path, help=page)
+    parser.add_argument("picture", type=Path)
+    parser.add_argument("--runs", type=Path, help="folder of the runs, or for them")
+    options = parser.parse_args()
+
+    def work() -> None:
+        checked(options.picture)
+        with TemporaryDirectory() as temporary:
+            folder = options.runs or Path(temporary)
+            folder.mkdir(parents=True, exist_ok=True)
+            tables = write(options.page, options.picture, folder)
+        renew(options.page, lambda text: with_tables(options.page, text, tables))
+
+    return run(script, work)

@@ -21,6 +21,7 @@
 #include "base/caller.hpp"
 #include "base/error.hpp"
 #include "files/text.hpp"
+#include "results/stream.hpp"
 
 namespace slipfront::results {
 namespace {
@@ -40,7 +41,6 @@ constexpr std::array names_of_run = {"case.resolved.toml", "run.json",   "interf
 /// but a history.
 constexpr const char* events_name = "events";
 constexpr const char* slow_name = "slow";
-constexpr const char* history_name = "interface.h5";
 
 std::string overwrite_option() {
   return for_caller("--overwrite", "overwrite=True");
@@ -165,7 +165,7 @@ std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = ""
     for (const auto& name : numbers_in(dir / prefix / events_name))
       add_set_in(fs::path(prefix) / events_name / name);
     for (const auto& name : numbers_in(dir / prefix / slow_name))
-      names.insert((fs::path(prefix) / slow_name / name / history_name).string());
+      names.insert((fs::path(prefix) / slow_name / name / history_file).string());
   }
   if (!names.empty()) names.insert(prefix + files::checksum_list);
   return names;

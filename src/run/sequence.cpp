@@ -147,7 +147,7 @@ const InitialState* Sequence::next(const SlowRows& slow_rows) {
   return &initial_;
 }
 
-void Sequence::heal_until(double time_s) {
+std::vector<interface::FrictionLaw> Sequence::heal_until(double time_s) {
   const auto x_m = interface_x_m(initial_.mesh);
   auto laws = input::friction_at(config_, x_m);
   laws.resize(x_m.size(), config_.friction);
@@ -160,29 +160,30 @@ void Sequence::heal_until(double time_s) {
     initial_.mu_s.push_back(mu_s);
   }
   statics_.set_mu_s(initial_.mu_s);
-  event_config_ = input::with_friction_at(config_, x_m, laws);
+  return laws;
 }
 
-void Sequence::heal_to_critical() {
+std::vector<interface::FrictionLaw> Sequence::heal_to_critical() {
   // From below: what mu_s has grown to at a shear is reached at a later one, until they meet.
   constexpr double accuracy = 1e-10;
   constexpr int most = 1000;
   const double end_m = path_.shear_m(path_.end_s()) - held_.moved_m;
   double shear_m = at_rest_.shear_m;
   for (int i = 0; i < most && shear_m < end_m; ++i) {
-    heal_until(time_s(shear_m));
+    auto laws = heal_until(time_s(shear_m));
     const double critical_m = statics_.shear_to(1).shear_m;
-    if (critical_m - shear_m <= accuracy * std::abs(critical_m + held_.moved_m)) return;
+    if (critical_m - shear_m <= accuracy * std::abs(critical_m + held_.moved_m)) return laws;
     shear_m = critical_m;
   }
   if (shear_m < end_m)
     throw UserError("{} heals the interface faster than the load grows; reduce it, or raise {}",
                     Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_over_c_L"));
-  heal_until(path_.end_s());
+  return heal_until(path_.end_s());
 }
 
 bool Sequence::stick_to_next() {
-  if (input::heals(config_)) heal_to_critical();
+  if (input::heals(config_))
+    event_config_ = input::with_friction_at(config_, interface_x_m(initial_.mesh), heal_to_critical());
   const double margin = config_.loading.critical_margin;
   // Where a share is passed at rest, there may be no shear that brings it about: a strength with a memory
   // leaves nodes beyond mu_s.

@@ -68,11 +68,11 @@ class Sequence {
   void begin_slow_slip();
   /// Loads by equilibria to the next event. @return whether it begins before sequence.end_s
   bool stick_to_next();
-  /// Gives nodes the mu_s that they have at a time.
-  void heal_until(double time_s);
+  /// Gives nodes the mu_s that they have at a time. @return their laws with it
+  std::vector<interface::FrictionLaw> heal_until(double time_s);
   /// The first shear since the tilt, at most that of sequence.end_s, at which t/p inside reaches mu_s, which
   /// grows.
-  void heal_to_critical();
+  std::vector<interface::FrictionLaw> heal_to_critical();
   bool slip_to_next(const SlowRows& slow_rows);
   /// @param u_x_per_shear  see statics::Statics::slid_to
   statics::Equilibrium slid_to(const motion::SlowSlip& state, std::vector<double> u_x_per_shear) const;
@@ -96,7 +96,7 @@ class Sequence {
                  const record::StaticState& tractions_after);
 
   input::Case config_;
-  std::optional<input::Case> event_config_;  ///< where mu_s grows at rest
+  std::optional<input::Case> event_config_;  ///< of the last event that began, where mu_s grows at rest
   LoadingPath path_;
   InitialState initial_;
   statics::Statics statics_;

@@ -522,7 +522,9 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
     }
     EXPECT_NEAR(nearest, 1 + config.loading.critical_margin, 1e-6);
     const auto result = run_from(of_event, *initial, test::go_on);
+    const auto begun_with = of_event.friction_along_x.table.text;
     sequence.take(result);
+    EXPECT_EQ(of_event.friction_along_x.table.text, begun_with);  // of which its row tells
     const double rests_s = sequence.loading().back().time_s;
     for (const auto& onset : result.event.record.onsets) slipped_at_s[onset.node] = rests_s;
   }
