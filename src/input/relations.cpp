@@ -441,9 +441,10 @@ void require_end_of_slow_slip(const Case& config) {
     const auto response = interface::state_response(config.friction, V_m_per_s);
     if (response->b > response->a) return;
   }
-  throw UserError("friction does not weaken with the slip rate (a >= b): slip stays slow, and no event comes; "
-                  "choose {}, or a larger {}",
-                  Key("sequence.end_s"), Key("friction.b"));
+  throw UserError(
+      "friction does not weaken with the slip rate (a >= b): slip stays slow, and no event comes; "
+      "choose {}, or a larger {}",
+      Key("sequence.end_s"), Key("friction.b"));
 }
 
 /// What makes the end of an event known, and the places at which its nodes have come to rest.

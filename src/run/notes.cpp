@@ -191,10 +191,10 @@ void add_stiff_machine(const input::Case& config, Notes& notes) {
   yields_m_per_Pa += config.plate.width_m / machine.shear_stiffness_Pa;
   const double ratio = 1 / (yields_m_per_Pa * critical_Pa_per_m);
   if (critical_Pa_per_m > 0 && ratio > 1)
-    notes.push_back(fmt::format(
-        "block and machine have {:.3g} times the critical stiffness (b - a) p/d_c = {:.3g} Pa/m: slip may stay "
-        "slow without an event; choose sequence.end_s",
-        ratio, critical_Pa_per_m));
+    notes.push_back(
+        fmt::format("block and machine have {:.3g} times the critical stiffness (b - a) p/d_c = {:.3g} Pa/m: "
+                    "slip may stay slow without an event; choose sequence.end_s",
+                    ratio, critical_Pa_per_m));
 }
 
 /// A free side bears no shear.

@@ -186,8 +186,8 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
     told_at *= 2;
     double fastest_m_per_s = 0;
     for (const double V : row.slip_rate_m_per_s) fastest_m_per_s = std::max(fastest_m_per_s, std::abs(V));
-    hooks_.note(fmt::format("slow slip before {}: {} rows to {:.6g} s, fastest node {:.3g} m/s", event, n_rows,
-                            row.time_s.front(), fastest_m_per_s));
+    hooks_.note(fmt::format("slow slip before {}: {} rows to {:.6g} s, fastest node {:.3g} m/s", event,
+                            n_rows, row.time_s.front(), fastest_m_per_s));
   };
   try {
     const auto* initial = sequence_->next(take_slow);
