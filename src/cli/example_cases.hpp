@@ -10,6 +10,6 @@ struct ExampleCase {
   const char* kind;
   const char* text;  ///< of its file, read when the program is built
 };
-extern const std::array<ExampleCase, 5> example_cases;
+extern const std::array<ExampleCase, 6> example_cases;
 
 }  // namespace slipfront::cli

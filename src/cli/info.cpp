@@ -69,6 +69,16 @@ void add_steps(const input::Case& config, const run::Info& info, Listing& list) 
   if (input::is_sequence(config))
     list.add("sequence", fmt::format("at most {} events; steps, disk and time are those of one to time.end_s",
                                      config.sequence.max_events));
+  const auto& machine = config.plate.machine;
+  if (std::isfinite(machine.shear_stiffness_Pa))
+    list.add("machine along x", fmt::format("{:g} Pa", machine.shear_stiffness_Pa));
+  if (std::isfinite(machine.normal_stiffness_Pa))
+    list.add("machine downwards", machine.normal_stiffness_Pa > 0
+                                      ? fmt::format("{:g} Pa", machine.normal_stiffness_Pa)
+                                      : std::string("dead load"));
+  if (const auto& path = config.sequence.path; !path.times_s.empty())
+    list.add("path of the loading", fmt::format("{} points, to {:g} m at {:g} s", path.times_s.size(),
+                                                path.shears_m.back(), path.times_s.back()));
   if (info.needs.ramp_steps > 0)
     list.add("steps of the ramp before",
              fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));

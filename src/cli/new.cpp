@@ -21,7 +21,8 @@ void add_new(CLI::App& app) {
       ->add_option("KIND", *kind,
                    "rigid: a block on a rigid plane; two-bodies: of unlike materials; pressed: two blocks, "
                    "pressed and sheared by displacements; gauges: with strain gauges; "
-                   "sequence: events of a block pushed at its side")
+                   "sequence: events of a block pushed at its side; "
+                   "stick-slip: of rate-and-state friction in a machine")
       ->check(CLI::IsMember(kinds))
       ->capture_default_str();
   command->callback(

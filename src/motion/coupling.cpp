@@ -189,7 +189,7 @@ SlipRates Coupling::slip_rates() const {
     const double v = std::abs(interface_.slip_rate_m_per_s[i]);
     rates.finite &= std::isfinite(v);
     rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, v);
-    if (interface_.p_Pa[i] > 0)
+    if (interface_.p_Pa[i] > loads_.light_Pa)
       rates.fastest_in_contact_m_per_s = std::max(rates.fastest_in_contact_m_per_s, v);
     if (interface_.slipping[i] != 0)
       rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, v);

@@ -37,6 +37,7 @@ struct Loads {
   } prestress_rate = {};
   /// States of a law that has some, [states] of [interface nodes]; empty: as the law begins.
   std::vector<std::vector<double>> law_states = {};
+  double light_Pa = 0;  ///< pressure up to which a node does not count as in contact, see light_pressure_Pa
 };
 
 /// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface

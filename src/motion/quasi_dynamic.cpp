@@ -13,11 +13,18 @@ namespace {
 
 /// Error of psi over a, and of slip over d_c, in a step.
 constexpr double accuracy = 1e-5;
-/// Of the mean pressure. Nodes that bear less, next to an edge where contact opens, have friction too small
-/// and too steep to be followed, and slip without it.
-constexpr double light_share = 0.01;
 
 }  // namespace
+
+double light_pressure_Pa(const std::vector<double>& p_Pa, const std::vector<double>& tributary_m) {
+  constexpr double share = 0.01;
+  double force_N_per_m = 0, length_m = 0;
+  for (std::size_t i = 0; i < tributary_m.size(); ++i) {
+    force_N_per_m += p_Pa[i] * tributary_m[i];
+    length_m += tributary_m[i];
+  }
+  return share * force_N_per_m / length_m;
+}
 
 double SlowSlip::fastest_m_per_s() const {
   double fastest = 0;
@@ -55,12 +62,7 @@ void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics:
   works_ = {};
   next_dt_s_ = 0;
   balance(now_, rates_);
-  double force_N_per_m = 0, length_m = 0;
-  for (std::size_t i = 0; i < tributary_m_.size(); ++i) {
-    force_N_per_m += now_.p_Pa[i] * tributary_m_[i];
-    length_m += tributary_m_[i];
-  }
-  light_Pa_ = light_share * force_N_per_m / length_m;
+  light_Pa_ = light_pressure_Pa(now_.p_Pa, tributary_m_);
   settle_contact();
 }
 

@@ -12,6 +12,11 @@
 
 namespace slipfront::motion {
 
+/// Nodes that bear less, next to an edge where contact opens, have friction too small and too steep to be
+/// followed: in slow slip they slip without it, and an event's end does not wait for them. A hundredth of the
+/// mean pressure. @param tributary_m  [interface nodes]
+double light_pressure_Pa(const std::vector<double>& p_Pa, const std::vector<double>& tributary_m);
+
 /// Slip of an interface whose bodies are in equilibrium at all times. All lists [interface nodes].
 struct SlowSlip {
   double time_s = 0;

@@ -9,6 +9,7 @@
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
+#include "motion/quasi_dynamic.hpp"
 #include "motion/trigger_zone.hpp"
 #include "run/choices.hpp"
 
@@ -132,6 +133,8 @@ motion::Loads starting_loads(const input::Case& config, const statics::Equilibri
     loads.prestress_p_Pa = state.tractions.p_s_Pa;
     loads.prestress_rate = {config.prestress.t_rate_Pa_per_s, config.prestress.p_rate_Pa_per_s};
   }
+  if (input::is_sequence(config))
+    loads.light_Pa = motion::light_pressure_Pa(state.tractions.p_s_Pa, mesh::tributary_lengths_m(mesh));
   loads.trigger = config.trigger;
   loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh,
                                                         mesh::tributary_lengths_m(mesh));

@@ -176,6 +176,27 @@ void add_damping(const input::Case& config, Notes& notes) {
         advised_s));
 }
 
+/// Stiffness of block and machine under uniform slip over the critical one of steady sliding (Ruina 1983).
+void add_stiff_machine(const input::Case& config, Notes& notes) {
+  const auto& machine = config.plate.machine;
+  if (!input::is_slow(config) || std::isfinite(config.sequence.end_s) ||
+      !config.sequence.path.times_s.empty() || config.plate.pusher.is_there())
+    return;
+  const auto response = *interface::state_response(config.friction, 0);
+  const double critical_Pa_per_m =
+      (response.b - response.a) * input::nominal_pressure_Pa(config) / response.d_c_m;
+  double yields_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material);
+  if (has_base_body(config))
+    yields_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(input::base_material(config));
+  yields_m_per_Pa += config.plate.width_m / machine.shear_stiffness_Pa;
+  const double ratio = 1 / (yields_m_per_Pa * critical_Pa_per_m);
+  if (critical_Pa_per_m > 0 && ratio > 1)
+    notes.push_back(
+        fmt::format("block and machine have {:.3g} times the critical stiffness (b - a) p/d_c = {:.3g} Pa/m: "
+                    "slip may stay slow without an event; choose sequence.end_s",
+                    ratio, critical_Pa_per_m));
+}
+
 /// A free side bears no shear.
 void add_free_sides(const input::Case& config, Notes& notes) {
   if (!is_prestressed(config)) return;
@@ -252,6 +273,7 @@ std::vector<std::string> notes_of_case(const input::Case& config, const RuptureO
   add_lengths(config, notes);
   add_times(config, step_s, notes);
   add_free_sides(config, notes);
+  add_stiff_machine(config, notes);
   add_damping(config, notes);
   if (config.time.step_factor > 1)
     notes.emplace_back("the step is above the largest stable one (time.allow_unstable)");

@@ -231,9 +231,10 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
 }
 
 bool Sequence::slip_to_next(const SlowRows& slow_rows) {
-  // Rows of the loading come where the fastest slip rate has doubled or halved, those of the interface by
-  // steps.
+  // Rows of the loading come where the fastest slip rate has doubled or halved and where F_S/F_N turns, those
+  // of the interface by steps.
   constexpr double row_factor = 2;
+  const double turn = 0.01 * std::ranges::min(slow_->friction().a());
   constexpr std::int64_t steps_per_row = 4;
   const auto from = loading_.back();
   const auto& state = slow_->state();
@@ -247,14 +248,32 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += held_.moved_m - u_tilted.x_m[k];
     slow_rows(row);
   };
+  const auto friction = [&] {
+    double shear = 0, normal = 0;
+    for (std::size_t k = 0; k < initial_.tributary_m.size(); ++k) {
+      shear += state.t_Pa[k] * initial_.tributary_m[k];
+      normal += state.p_Pa[k] * initial_.tributary_m[k];
+    }
+    return shear / normal;
+  };
   slow_->start(held_.time_s, held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
+  double extreme = friction(), direction = 1;
+  const auto has_turned = [&] {
+    const double back = direction * (extreme - friction());
+    if (back > 0 && back < turn) return false;
+    extreme = friction();
+    if (back > 0) direction = -direction;
+    return back > 0;
+  };
   const auto n_before = slow_->n_steps();
   give_row();
   const auto after_step = [&] {
-    if (!monitor_(0, 0)) throw Interrupted(statics::interrupted_in_statics);
+    if (!monitor_(0, 0))
+      throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after the tilt", state.time_s));
     if ((slow_->n_steps() - n_before) % steps_per_row == 0) give_row();
     const double rate = state.fastest_m_per_s();
-    if (rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
+    const bool turned = has_turned();
+    if (turned || rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
       loading_.push_back(slow_row(LoadingPhase::creeps, from));
       row_rate_m_per_s = rate;
     }

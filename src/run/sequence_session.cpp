@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/sequence_session.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -171,6 +173,8 @@ bool SequenceSession::run_event() {
 
 const InitialState* SequenceSession::load_to(const std::string& event) {
   std::optional<results::ResultStream> slow;
+  // Ordinary slow slip has fewer rows.
+  std::size_t n_rows = 0, told_at = 4096;
   const auto take_slow = [&](const record::History& row) {
     if (!slow) {
       const auto dir = results::slow_folder(folder_.unfinished(), sequence_->events().size() + 1);
@@ -178,6 +182,12 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
       slow.emplace(dir, results::RunFiles{history_table(config_, row.x_m), {}});
     }
     slow->sample(row);
+    if (++n_rows < told_at) return;
+    told_at *= 2;
+    double fastest_m_per_s = 0;
+    for (const double V : row.slip_rate_m_per_s) fastest_m_per_s = std::max(fastest_m_per_s, std::abs(V));
+    hooks_.note(fmt::format("slow slip before {}: {} rows to {:.6g} s, fastest node {:.3g} m/s", event,
+                            n_rows, row.time_s.front(), fastest_m_per_s));
   };
   try {
     const auto* initial = sequence_->next(take_slow);

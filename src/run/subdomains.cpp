@@ -134,7 +134,8 @@ motion::Loads from_root(Processes& processes, const std::function<motion::Loads(
   motion::Loads loads;
   const auto members = [&](auto&& archive) {
     archive(loads.prestress_t_Pa, loads.prestress_p_Pa, loads.trigger_force_N_per_m, loads.trigger,
-            loads.intact, loads.weakens_at_s, loads.weakening_time_s, loads.prestress_rate, loads.law_states);
+            loads.intact, loads.weakens_at_s, loads.weakening_time_s, loads.prestress_rate, loads.law_states,
+            loads.light_Pa);
   };
   auto message = processes.from_root([&](MessageBuffer& to) {
     loads = make();

@@ -114,7 +114,7 @@ def test_no_part_of_the_reference(program):
     assert "did you mean friction?" in refusal(program("keys", "fricton"))
 
 
-KINDS = ("rigid", "two-bodies", "pressed", "gauges", "sequence")
+KINDS = ("rigid", "two-bodies", "pressed", "gauges", "sequence", "stick-slip")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -122,8 +122,9 @@ def test_a_new_case_runs(program, tmp_path, kind):
     case = tmp_path / "mine.toml"
     case.write_text(require_done(program("new", kind)).stdout)
     assert require_done(program("validate", case)).stdout.startswith(f"{case}: valid")
-    shorter = "sequence.max_events=2" if kind == "sequence" else "time.end_s=20e-6"
-    coarse = sets("plate.element_size_m=2e-3", shorter)
+    of_sequence = kind in ("sequence", "stick-slip")
+    shorter = "sequence.max_events=2" if of_sequence else "time.end_s=20e-6"
+    coarse = sets("plate.element_size_m=4e-3" if of_sequence else "plate.element_size_m=2e-3", shorter)
     require_done(program("run", case, "-q", "-o", "out", *coarse))
 
 

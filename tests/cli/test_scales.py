@@ -176,6 +176,24 @@ def test_a_sound_case_has_no_notes(program, write_case):
     assert "shear wave" not in printed
 
 
+def test_a_machine_too_stiff_for_events_is_told(program, write_case):
+    """Under uniform slip: H/G of the block, and what the machine yields, against d_c/((b - a) p)."""
+    slow = '[friction]\nlaw = "rate_and_state_aging"\na = 0.01\nb = 0.02\n[sequence]\nmax_events = 2\n'
+    block = (
+        "[plate]\nwidth_m = 0.1\nheight_m = 0.05\nelement_size_m = 2e-3\n[loading]\nmean_pressure_Pa = 5e6\n"
+    )
+    case = write_case(block + slow)
+    modulus_Pa = 2.6e9 / (2 * 1.37)
+    stiff_m = (0.02 - 0.01) * 5e6 / (modulus_Pa / 0.05)
+    told = "block and machine have 1.25 times the critical stiffness (b - a) p/d_c"
+    assert told in notes_of(program, case, f"friction.d_c_m={1.25 * stiff_m}")
+    assert "critical stiffness" not in notes_of(program, case, f"friction.d_c_m={0.8 * stiff_m}")
+    ended = (f"friction.d_c_m={1.25 * stiff_m}", "sequence.end_s=10")
+    assert "critical stiffness" not in notes_of(program, case, *ended)
+    yielding = (f"friction.d_c_m={1.25 * stiff_m}", "loading.shear_stiffness_Pa=1e9")
+    assert "critical stiffness" not in notes_of(program, case, *yielding)
+
+
 CASES = Path(__file__).parent / "cases"
 
 

@@ -44,7 +44,7 @@ class Rupture {
  public:
   Rupture(const solid::Material& above, const solid::Material* below, const TimeStepping& time,
           interface::ContactAlgorithm algorithm = interface::ContactAlgorithm::direct,
-          double height_below_m = 0.012)
+          double height_below_m = 0.012, double light_Pa = 0)
       : mesh_(free_plate()), mesh_below_(free_plate(0.02, height_below_m)) {
     const auto law = support::with_algorithm(support::gentle_law, algorithm);
     stepper_ = below == nullptr ? std::make_unique<Stepper>(mesh_, above, law, time)
@@ -55,6 +55,7 @@ class Rupture {
     auto state = statics::prestressed(mesh_, tractions);
     state.below_u_m = state.below_u_per_shear = solid::Field(mesh_below_.n_nodes());
     Loads loads{tractions.t_s_Pa, tractions.p_s_Pa};
+    loads.light_Pa = light_Pa;
     loads.intact.assign(n, 1.0);
     for (std::size_t i = n / 3; i < n / 2; ++i) loads.intact[i] = 0;
     stepper_->start(state, 0, loads);
@@ -95,6 +96,16 @@ TEST(TwoBodies, OfOneKindMoveOppositelyUnderAnUnchangedPressure) {
     }
     for (const double p : rupture.stepper().interface_state().p_Pa) EXPECT_NEAR(p, p0_Pa, 1e-9 * p0_Pa);
     EXPECT_GT(rupture.n_onsets(), 5U);
+  }
+}
+
+TEST(TwoBodies, LightNodesDoNotCountAsInContact) {
+  for (const double light_Pa : {0.0, 0.99 * p0_Pa, 1.01 * p0_Pa}) {
+    Rupture rupture(pmma, &pmma, stepping(1), interface::ContactAlgorithm::direct, 0.01, light_Pa);
+    rupture.advance(5);
+    const auto rates = rupture.stepper().slip_rates();
+    EXPECT_GT(rates.fastest_m_per_s, 0);
+    EXPECT_EQ(rates.fastest_in_contact_m_per_s, light_Pa < p0_Pa ? rates.fastest_m_per_s : 0);
   }
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import re
 from dataclasses import replace
 
@@ -255,6 +256,37 @@ def test_forces_are_told_with_their_displacements(tmp_path):
     assert {name: getattr(found, name) for name in of_run} == of_run
     assert "mean_pressure_Pa" in repr(slipfront.info(case))
     assert slipfront.info(CASE).loads is None
+
+
+@pytest.mark.parametrize(
+    ("tables", "says"),
+    [
+        ({"loading": {"shear_stiffness_Pa": 1e9}}, "; machine of stiffness 1 GPa along x"),
+        ({"loading": {"normal_stiffness_Pa": 2e9}}, "; stiffness 2 GPa downwards"),
+        ({"loading": {"normal_stiffness_Pa": 0.0}}, "; dead load"),
+        (
+            {"sequence": {"times_s": [2.0, 10.0], "shears_m": [1e-6, 1e-6]}},
+            "; loaded along a path of 2 points to 1 µm at 10 s",
+        ),
+        ({"loading": {"shear_stiffness_Pa": math.inf}}, ""),
+    ],
+)
+def test_the_machine_and_the_path_are_told(pair, tables, says):
+    run = thin_run(pair)
+    case = run.case | {name: run.case.get(name, {}) | table for name, table in tables.items()}
+    told, before = setup.loads(replace(run, case=case)), setup.loads(run)
+    assert told == before + says
+
+
+def test_info_tells_the_machine_and_the_path(tmp_path):
+    keys = 'title = "machine"\n[plate]\nelement_size_m = 5e-3\n[loading]\nshear_stiffness_Pa = 1e9\n'
+    path = (
+        "normal_stiffness_Pa = 0.0\n[sequence]\nmax_events = 2\ntimes_s = [2, 10]\nshears_m = [1e-6, 1e-6]\n"
+    )
+    printed = require_done(program("info", write_case(tmp_path, keys + path), cwd=tmp_path)).stdout
+    assert re.search(r"machine along x +1e\+09 Pa\n", printed), printed
+    assert re.search(r"machine downwards +dead load\n", printed), printed
+    assert re.search(r"path of the loading +2 points, to 1e-06 m at 10 s\n", printed), printed
 
 
 def test_the_critical_crack_is_that_of_info(pair):

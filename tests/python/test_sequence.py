@@ -12,6 +12,7 @@ import shutil
 import numpy as np
 import pytest
 import slipfront
+import xarray as xr
 from common import refusal, require_done, require_same_bytes
 from package_cases import program, write_case
 from refusals import flip, replace
@@ -284,17 +285,23 @@ def test_the_loading_has_slow_slip(stick_slip):
         assert rows.sizes["row"] > 10
         assert slow["time_s"][0] <= rows["time_s"].min() and rows["time_s"].max() <= slow["time_s"][-1]
         rates = rows["fastest_slip_rate_m_per_s"].to_numpy()
-        factors = rates[1:] / rates[:-1]
-        assert ((factors > 2) | (factors < 0.5)).all()
-        # Force and fastest rate of the history at the times of both.
-        nodes = np.full(slow.sizes["x_m"], 2e-3)
+        nodes = xr.DataArray(np.full(slow.sizes["x_m"], 2e-3), dims="x_m")
         nodes[[0, -1]] /= 2
+        # Where the fastest rate has doubled or halved, or the force has turned by a hundredth of a.
+        factors, friction = rates[1:] / rates[:-1], rows["shear_over_normal"].to_numpy()
+        of_slow = (slow["t_Pa"] @ nodes / (slow["p_Pa"] @ nodes)).to_numpy()
+        turns, since_s = np.flatnonzero((factors < 2) & (factors > 0.5)) + 1, 0.0
+        for row in turns:
+            until_s = float(rows["time_s"][row])
+            passed = of_slow[((slow["time_s"] >= since_s) & (slow["time_s"] <= until_s)).to_numpy()]
+            assert max(passed.max() - friction[row], friction[row] - passed.min()) > 0.5e-4
+            since_s = until_s
+        assert len(turns) < len(factors) / 4
+        # Force and fastest rate of the history at the times of both.
         times = (np.round(of["time_s"], 9) for of in (rows, slow))
         _, i, j = np.intersect1d(*times, return_indices=True)
         assert len(i) > 3
-        np.testing.assert_allclose(
-            slow["t_Pa"][j].to_numpy() @ nodes, rows["shear_force_N_per_m"][i], rtol=1e-6
-        )
+        np.testing.assert_allclose((slow["t_Pa"] @ nodes)[j], rows["shear_force_N_per_m"][i], rtol=1e-6)
         np.testing.assert_allclose(np.abs(slow["slip_rate_m_per_s"][j]).max("x_m"), rates[i], rtol=1e-6)
 
 

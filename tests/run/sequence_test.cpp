@@ -341,6 +341,21 @@ TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedUnderALawWithAState) {
   expect_same_wherever_stopped(rate_and_state_case(3), 3 + 3 * 7);  // and slow slip before it
 }
 
+/// Friction that strengthens: rows come until the time at which it ends.
+TEST(SequenceInAFolder, LongSlowSlipTellsHowFarItHasCome) {
+  const test::TemporaryFolder folder;
+  auto config = rate_and_state_case(2);
+  config.plate = {.width_m = 0.01, .height_m = 5e-3, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  config.loading.edge_margin_m = 1e-3;
+  config.friction.parameter("b") = 0.005;
+  config.sequence.end_s = 1e5;
+  std::vector<std::string> notes;
+  SessionHooks hooks = undisturbed;
+  hooks.note = [&](const std::string& note) { notes.push_back(note); };
+  start_sequence(folder / "out", config, hooks);
+  EXPECT_THAT(notes, ::testing::Contains(HasSubstr("slow slip before event 1: 4096 rows to ")));
+}
+
 TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
   const test::TemporaryFolder folder;
   const auto config = sequence_case(3);
@@ -581,6 +596,13 @@ TEST(Sequence, InAHoldTheForceRelaxesUnderALawWithAState) {
   });
   ASSERT_NE(initial, nullptr);
   const auto& rows = held.loading();
+  // A row where it has turned, within a hundredth of a of the peak at which the hold begins.
+  const auto turned = std::ranges::find_if(rows, [&](const auto& row) { return row.time_s > hold_from_s; });
+  const auto peak = std::ranges::max_element(rows, {}, [&](const LoadingRow& row) {
+    return row.time_s < hold_from_s + 0.5 * hold_s ? row.shear_over_normal : 0;
+  });
+  ASSERT_NE(turned, rows.end());
+  EXPECT_LT(peak->shear_over_normal - turned->shear_over_normal, 2e-4);
   EXPECT_LT(last_Pa, (1 - 3e-5) * first_Pa);
   EXPECT_GT(rows.back().time_s, hold_from_s + hold_s);
   EXPECT_GT(rows.back().shear_over_normal, first.shear_over_normal + 1e-4);  // the aged surfaces are stronger

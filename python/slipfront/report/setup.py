@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -121,12 +122,27 @@ def forces(found: dict[str, Any]) -> list[str]:
     ]
 
 
+def machine(run: Run) -> str:
+    """Stiffness and path of what loads the plate, in words; empty of a rigid machine at a constant speed."""
+    along_x, down = (entry(run.case, "loading", f"{name}_stiffness_Pa") for name in ("shear", "normal"))
+    times_s, shears_m = (entry(run.case, "sequence", name) for name in ("times_s", "shears_m"))
+    parts = []
+    if is_number(along_x) and math.isfinite(along_x):
+        parts.append(f"machine of stiffness {quantity(along_x, 'Pa')} along x")
+    if is_number(down) and math.isfinite(down):
+        parts.append(f"stiffness {quantity(down, 'Pa')} downwards" if down else "dead load")
+    if isinstance(times_s, list) and isinstance(shears_m, list) and times_s and shears_m:
+        end = f"{quantity(shears_m[-1], 'm')} at {quantity(times_s[-1], 's')}"
+        parts.append(f"loaded along a path of {len(times_s)} points to {end}")
+    return "".join(f"; {part}" for part in parts)
+
+
 def loads(run: Run) -> str:
     """p and t before the event, and where they come from."""
     speed = entry(run.case, "loading", "shear_speed_over_c_L")
     moves = (
         f"; upper edge moves to +x at {speed * run.c_L_m_per_s:.3g} m/s" if is_number(speed) and speed else ""
-    )
+    ) + machine(run)
     if is_uniform(run):
         p, t = si(run, "prestress", "p_Pa"), si(run, "prestress", "t_Pa")
         return f"pressure p = {p}, shear t = {t}, prescribed, uniform{moves}"
@@ -245,6 +261,8 @@ def start(run: Run) -> str:
         case "none", _:
             return "nothing but the loads"
         case "spontaneous", _:
+            if str(entry(run.case, "friction", "law")).startswith("rate_and_state"):
+                return "spontaneous: slip is as fast as inertia counts"
             return "spontaneous: the shear just exceeds the critical one"
         case ("left" | "right") as side, form:
             forms = {
