@@ -55,7 +55,9 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   list.push_back(std::make_unique<Snapshots>(sampling.snapshot_times_s, *output));
   list.push_back(std::make_unique<BlowUpMonitor>(stepper_, waves.c_L_m_per_s, time.precision, start));
   if (sticks_within)
-    list.push_back(std::make_unique<StickCriterion>(state, *sticks_within, time.quiet_s, slow_m_per_s));
+    list.push_back(std::make_unique<StickCriterion>(
+        state, *sticks_within, time.quiet_s,
+        stuck_slip_fraction * slip_rate_scale_m_per_s(state, mu_s, waves), slow_m_per_s));
   else
     list.push_back(std::make_unique<RestCriterion>(stepper_, slip_rate_scale_m_per_s(state, mu_s, waves),
                                                    loads_settle_s, time.quiet_s));

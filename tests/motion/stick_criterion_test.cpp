@@ -12,9 +12,10 @@ constexpr double step_s = 1;
 class FiveNodes : public ::testing::Test {
  protected:
   /// Until which time steps go on, with the changes shown so far.
-  double ends_after_s() {
+  double ends_after_s(double slipping_m_per_s = 1e-3) {
     for (std::int64_t step = 0; step < 100; ++step)
-      if (!criterion_.after_step({step, step_s}, {})) return static_cast<double>(step) * step_s;
+      if (!criterion_.after_step({step, step_s}, {.fastest_slipping_m_per_s = slipping_m_per_s}))
+        return static_cast<double>(step) * step_s;
     return infinity;
   }
   void show(double time_s, std::vector<SlipChange> changes = {}) {
@@ -29,7 +30,7 @@ class FiveNodes : public ::testing::Test {
     state.contact.resize(5);
     return state;
   }
-  StickCriterion criterion_{state(), {1, 3}, 10};
+  StickCriterion criterion_{state(), {1, 3}, 10, 1e-9};
 };
 
 TEST_F(FiveNodes, EndsWhereNothingSlips) {
@@ -49,6 +50,12 @@ TEST_F(FiveNodes, WaitsForTheLastNodeWithinTheStretch) {
   EXPECT_EQ(ends_after_s(), 24);
 }
 
+TEST_F(FiveNodes, SlipThatHasFadedCountsAsStuck) {
+  show(2, {{1, true, 2, 1}});
+  EXPECT_EQ(ends_after_s(0.9e-9), 13);
+  EXPECT_EQ(ends_after_s(1.1e-9), infinity);
+}
+
 TEST_F(FiveNodes, NodesBesideDoNotCount) {
   show(2, {{0, true, 2, 1}, {4, true, 2, 1}});
   show(20);
@@ -59,7 +66,7 @@ TEST(StickCriterion, WaitsWhereANodeSlipsFasterThanEquilibriaMay) {
   statics::Equilibrium state;
   state.tractions.x_m = {0, 1};
   state.contact.resize(2);
-  StickCriterion criterion(state, {0, 1}, 10, 1e-3);
+  StickCriterion criterion(state, {0, 1}, 10, 1e-9, 1e-3);
   const auto goes_on = [&](std::int64_t step, double fastest_m_per_s) {
     return criterion.after_step({step, step_s}, {.fastest_in_contact_m_per_s = fastest_m_per_s});
   };

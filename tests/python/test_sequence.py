@@ -20,6 +20,8 @@ from report_pages import data_of, page_of
 from slipfront.figures.sequence import main
 from slipfront.figures.sequence import sequence as draw
 from slipfront.read import ENERGY_TERMS, read_run
+from slipfront.report import setup
+from slipfront.report.run import thin_run
 
 N_EVENTS = 4
 # A fraction of a second.
@@ -465,6 +467,14 @@ def test_the_page_shows_slow_slip(stick_slip, tmp_path, monkeypatch):
             power = np.log10(np.clip(np.abs(ends["slip_rate_m_per_s"]), 1e-12, 1)).to_numpy()
             expected = np.where(ends["p_Pa"] > 0, np.round(254 * (power + 12) / 12), 255)
             np.testing.assert_array_equal(codes[row][[0, -1]], expected)
+
+
+def test_no_shear_is_critical_behind_slow_slip(stick_slip, folder):
+    told = [dict(setup.rows(thin_run(place / "events/0002")))["Loads"] for place in (stick_slip, folder)]
+    assert [("shear force" in loads, "of the critical" in loads) for loads in told] == [
+        (True, False),
+        (False, False),
+    ]
 
 
 def test_of_slow_slip_the_page_has_few_loads(stick_slip, tmp_path, monkeypatch):

@@ -116,9 +116,11 @@ def forces(found: dict[str, Any]) -> list[str]:
     if len(numbers) < len(keys):
         return []
     mean, normal, shear, critical = numbers
+    # Slow slip leads to the state in which its event begins; none is critical.
+    share = f", {shear / critical:.4g} of the critical one" if shear != critical else ""
     return [
         f"normal force {quantity(normal, 'N/m')}, a mean pressure of {quantity(mean, 'Pa')}",
-        f"shear force {quantity(shear, 'N/m')}, {shear / critical:.4g} of the critical one",
+        f"shear force {quantity(shear, 'N/m')}{share}",
     ]
 
 

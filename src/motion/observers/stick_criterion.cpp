@@ -6,8 +6,11 @@
 namespace slipfront::motion {
 
 StickCriterion::StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s,
-                               double slow_m_per_s)
-    : is_slipping_(state.contact.size()), quiet_s_(quiet_s), slow_m_per_s_(slow_m_per_s) {
+                               double stuck_m_per_s, double slow_m_per_s)
+    : is_slipping_(state.contact.size()),
+      quiet_s_(quiet_s),
+      stuck_m_per_s_(stuck_m_per_s),
+      slow_m_per_s_(slow_m_per_s) {
   for (const double x_m : state.tractions.x_m)
     is_within_.push_back(x_m >= stretch.from_m && x_m <= stretch.to_m ? 1 : 0);
 }
@@ -20,11 +23,12 @@ void StickCriterion::at_update(const SlipUpdate& seen) {
     n_slipping_ += change.begins ? 1 : -1;
     since_s_ = seen.time_s;
   }
-  if (n_slipping_ > 0) since_s_ = seen.time_s;
 }
 
 bool StickCriterion::after_step(const Now& now, const SlipRates& rates) {
-  if (rates.fastest_in_contact_m_per_s > slow_m_per_s_) since_s_ = now.time_s();
+  if ((n_slipping_ > 0 && rates.fastest_slipping_m_per_s > stuck_m_per_s_) ||
+      rates.fastest_in_contact_m_per_s > slow_m_per_s_)
+    since_s_ = now.time_s();
   return !is_at_rest(now);
 }
 

@@ -10,6 +10,10 @@
 
 namespace slipfront::motion {
 
+/// Of the rate scale, see slip_rate_scale_m_per_s: some nanometres a second, less than where slip begins by
+/// any margin of the load that counts.
+inline constexpr double stuck_slip_fraction = 1e-9;
+
 /// A part of the interface, m.
 struct Stretch {
   double from_m = 0, to_m = 0;
@@ -17,13 +21,14 @@ struct Stretch {
 
 /// Criterion of the end of an event that equilibria follow: all nodes of a stretch have stuck for some time,
 /// whatever waves are left, and none slips faster than equilibria may. Beside the stretch, at the edges of
-/// contact, equilibria slip as well.
+/// contact, equilibria slip as well. Damped slip may fade without a stop: slow enough, it counts as stuck.
 class StickCriterion final : public Observer {
  public:
   /// @param state  in which the event begins, all nodes sticking
-  /// @param slow_m_per_s  slip rate up to which equilibria may slip
+  /// @param stuck_m_per_s  slip rate up to which all nodes count as stuck
+  /// @param slow_m_per_s   slip rate up to which equilibria may slip
   StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s,
-                 double slow_m_per_s = infinity);
+                 double stuck_m_per_s, double slow_m_per_s = infinity);
 
   void at_update(const SlipUpdate& seen) override;
   bool after_step(const Now& now, const SlipRates& rates) override;
@@ -35,13 +40,13 @@ class StickCriterion final : public Observer {
   void restored(Pause& pause) override;
 
  private:
-  bool is_at_rest(const Now& now) const { return n_slipping_ == 0 && now.time_s() - since_s_ > quiet_s_; }
+  bool is_at_rest(const Now& now) const { return now.time_s() - since_s_ > quiet_s_; }
 
   std::vector<std::uint8_t> is_within_;
   std::vector<std::uint8_t> is_slipping_;  ///< [nodes] of those within
   std::int64_t n_slipping_ = 0;            ///< the number of these
-  double quiet_s_, slow_m_per_s_;
-  double since_s_ = 0;  ///< since then none slips
+  double quiet_s_, stuck_m_per_s_, slow_m_per_s_;
+  double since_s_ = 0;  ///< since then all nodes are stuck
 };
 
 }  // namespace slipfront::motion
