@@ -179,9 +179,7 @@ void add_damping(const input::Case& config, Notes& notes) {
 /// Stiffness of block and machine under uniform slip over the critical one of steady sliding (Ruina 1983).
 void add_stiff_machine(const input::Case& config, Notes& notes) {
   const auto& machine = config.plate.machine;
-  if (!input::is_slow(config) || std::isfinite(config.sequence.end_s) ||
-      !config.sequence.path.times_s.empty() || config.plate.pusher.is_there())
-    return;
+  if (!input::is_slow(config) || config.plate.pusher.is_there()) return;
   const auto response = *interface::state_response(config.friction, 0);
   const double critical_Pa_per_m =
       (response.b - response.a) * input::nominal_pressure_Pa(config) / response.d_c_m;
@@ -193,7 +191,7 @@ void add_stiff_machine(const input::Case& config, Notes& notes) {
   if (critical_Pa_per_m > 0 && ratio > 1)
     notes.push_back(
         fmt::format("block and machine have {:.3g} times the critical stiffness (b - a) p/d_c = {:.3g} Pa/m: "
-                    "slip may stay slow without an event; choose sequence.end_s",
+                    "slip may stay slow without an event, until sequence.end_s or the end of a path",
                     ratio, critical_Pa_per_m));
 }
 

@@ -32,9 +32,11 @@ STICK_SLIP = [
     "examples/stick-slip/case.toml",
     *sets("plate.element_size_m=8e-3", "sequence.max_events=3"),
 ]
+STABLE = [*STICK_SLIP, *sets("friction.a=0.02", "sequence.end_s=300", "friction.d_c_m=1e-5")]
 PLOTS = {  # of other pages those of a run
     "sequence": ("forces", "extents", "slips"),
     "stick-slip": ("forces", "extents", "slips", "phases"),
+    "stable sliding": ("forces", "phases"),
 }
 SWEPT = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "event.trigger_zone_m=0.02,0.03"]
 
@@ -60,6 +62,7 @@ def pages(tmp_path_factory):
     commands["reproduction"] = ["reproduce", "--quick"]
     commands["sequence"] = ["run", *SEQUENCE, "--quiet"]
     commands["stick-slip"] = ["run", *STICK_SLIP, "--quiet"]
+    commands["stable sliding"] = ["run", *STABLE, "--quiet"]
     commands["sweep"] = ["sweep", *CASES["probes"], *SWEPT, "--quiet"]
     found = {}
     for name, command in commands.items():
@@ -128,7 +131,7 @@ def change(browser, control, value, event):
     browser.execute_script(f"{element} s.dispatchEvent(new Event('{event}'))")
 
 
-@pytest.mark.parametrize("name", [*CASES, "reproduction", "sequence", "stick-slip"])
+@pytest.mark.parametrize("name", [*CASES, "reproduction", "sequence", "stick-slip", "stable sliding"])
 def test_a_page_draws_without_errors_and_without_a_network(opened, name):
     browser = opened(name)
     assert browser.get_log("browser") == []

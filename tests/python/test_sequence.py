@@ -503,6 +503,23 @@ def test_the_page_of_a_sequence_without_an_event(interrupted):
     assert "still running or killed, results up to event 0" in text
 
 
+def test_stable_sliding_is_shown_without_an_event(tmp_path):
+    changes = {"friction.a": 0.02, "sequence.end_s": 40}
+    slipfront.run(write_case(tmp_path, STICK_SLIP), changes, output=tmp_path / "out", progress=False)
+    text = page_of(tmp_path / "out", tmp_path / "page.html")
+    shown = data_of(text)["sequence"]
+    assert [name for name in ("forces", "extents", "slips", "phases") if f'id="{name}-plot"' in text] == [
+        "forces",
+        "phases",
+    ]
+    loading = slipfront.open(tmp_path / "out").loading
+    np.testing.assert_allclose(shown["loading"]["ratio"], loading["shear_over_normal"], rtol=1e-4, atol=1e-9)
+    assert shown["phases"]["borders"][-1] == 1 and "dashed" not in text
+    force, phases, _ = draw(slipfront.open(tmp_path / "out")).figure.axes
+    np.testing.assert_array_equal(force.lines[0].get_ydata(), loading["shear_over_normal"])
+    assert phases.get_xlim() == (0, 100)
+
+
 def test_the_picture_shows_the_tables(folder, tmp_path, capsys):
     sequence = slipfront.open(folder)
     events = sequence.events

@@ -87,29 +87,32 @@ def draw_phases(figure: Figure, ax: Axes, sequence: OpenSequence) -> None:
     labels = [f"{1 + k}: {t:.6g} s" for k, t in zip(shown, begin_s, strict=True)]
     ax.set_yticks(1.5 + 2 * shown, labels)
     ax.tick_params(axis="y", length=0)
-    ax.set(xlabel="$x$ (mm)", ylabel="event and its beginning, slow slip between")
+    ax.set(xlabel="$x$ (mm)", ylabel="slow slip and events by turns")
     figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="min", pad=0.02, aspect=40)
 
 
 def sequence(of: OpenSequence) -> Drawing:
-    is_slow = len(of.slow) > 0
-    figure = style.new_figure(style.PAGE_MM, 150 if is_slow else 62)
+    is_slow, is_eventful = len(of.slow) > 0, of.events.sizes["event"] > 0
+    left, right = ("abc", "d") if is_eventful else ("a", "b")
+    figure = style.new_figure(style.PAGE_MM, 150 if is_slow and is_eventful else 62)
     if is_slow:
-        panels = figure.subplot_mosaic("ad;bd;cd", width_ratios=(1, 1.5))
+        panels = figure.subplot_mosaic(";".join(letter + right for letter in left), width_ratios=(1, 1.5))
     else:
-        panels = figure.subplot_mosaic("abc")
-    for letter, draw in zip("abc", (draw_force, draw_extents, draw_slip), strict=True):
-        draw(panels[letter], of)
-    caption = (
-        "(a) Shear over normal force along the loading. (b) Extent of each event over that ratio where it "
-        "begins, orange where all nodes inside slip; ticks: ends predicted from the tractions before. (c) "
-        "Slip along the interface after each event."
-    )
-    if is_slow:
-        draw_phases(figure, panels["d"], of)
+        panels = figure.subplot_mosaic(left)
+    draw_force(panels["a"], of)
+    caption = "(a) Shear over normal force along the loading."
+    if is_eventful:
+        draw_extents(panels["b"], of)
+        draw_slip(panels["c"], of)
         caption += (
-            " (d) Slip rate of phase after phase: slow slip evenly over steps, which are shorter where it is "
-            "faster, and above each orange line an event over time; grey: contact is open."
+            " (b) Extent of each event over that ratio where it begins, orange where all nodes inside slip; "
+            "ticks: ends predicted from the tractions before. (c) Slip along the interface after each event."
+        )
+    if is_slow:
+        draw_phases(figure, panels[right], of)
+        caption += (
+            f" ({right}) Slip rate of phase after phase: slow slip evenly over steps, which are shorter "
+            "where it is faster, and above each orange line an event over time; grey: contact is open."
         )
     for letter, ax in panels.items():
         style.panel_letter(ax, letter)

@@ -142,7 +142,7 @@ def phases_data(sequence: OpenSequence, length: Unit) -> dict[str, Any] | None:
 
 
 def sequence_data(sequence: OpenSequence) -> dict[str, Any]:
-    """All that the plots show; there is an event."""
+    """All that the plots show."""
     events, slip = sequence.events, sequence.slip
     static = sequence.loading.isel(row=shown_rows(sequence.loading["phase"].to_numpy()))
     after = slip_after_events(sequence)
@@ -200,36 +200,42 @@ PHASES_SECTION = section(
 )
 
 
-def plots(data: dict[str, Any], n_nodes: int) -> list[str]:
-    return [
-        section(
+def plots(data: dict[str, Any], n_nodes: int) -> dict[str, str]:
+    """Sections by name; without an event none of what events do."""
+    strength = f"; dashed: {setup.MU_S} of a node" if data["strength"] is not None else ""
+    found = {
+        "forces": section(
             "forces",
             "Loads",
             plot("forces-plot", "Shear over normal force, and shear force, over time"),
             f"<p>{RATIO}: shear over normal force of the interface in static equilibria, the coefficient of "
-            f"friction of the sample; dashed: {setup.MU_S} of a node, where all have the same. Filled: an "
-            "event begins; open: the equilibrium at rest behind it. "
+            f"friction of the sample{strength}. Filled: an event begins; open: the equilibrium at rest "
+            "behind it. "
             + (
-                "Between events: slow slip, a point where the fastest slip rate has doubled or halved.</p>"
+                "Between events: slow slip, a point where the fastest slip rate has doubled or halved, and "
+                "where the ratio turns.</p>"
                 if data["phases"]
                 else "From event to event the line is straight, whatever happens there.</p>"
             ),
         ),
-        section(
+    }
+    if data["events"]:
+        found["extents"] = section(
             "extents",
             "Extents",
             plot("extents-plot", "Where each event slips, over the load at which it begins, and in order"),
             "<p>Bars: from where to where an event slips. Diamonds: where slip begins inside.</p>",
-        ),
-        section(
+        )
+        found["slips"] = section(
             "slips",
             "Slip",
             plot("slips-plot", "Slip along the interface after each event"),
             "<p>Slip since the tilt, after each event: the sum of what the records end with. Dark: the "
             f"first event, light: the last.{thinning(data, n_nodes)}</p>",
-        ),
-        *([PHASES_SECTION] if data["phases"] else []),
-    ]
+        )
+    if data["phases"]:
+        found["phases"] = PHASES_SECTION
+    return found
 
 
 def events_section(place: Place, sequence: OpenSequence) -> str:
@@ -287,18 +293,17 @@ def page(folder: Path, _file: Path) -> Page:
     n_events = sequence.events.sizes["event"]
     told = mark(place, n_events)
     title = str(place.info.get("title", "")) or place.name
-    data = sequence_data(sequence) if n_events else {}
+    data = sequence_data(sequence) if sequence.loading.sizes["row"] > 1 else {}
+    drawn = plots(data, sequence.slip.sizes["x_m"]) if data else {}
     remarks = [*([place.with_reason(told)] if told else []), *place.notes]
-    missing = {"phases"} if data else {"forces", "extents", "slips", "phases"}
-    if data and data["phases"]:
-        missing = set()
+    always = ("setup", "computation", "events")
     return Page(
         title=f"{title}: {told}" if told else title,
         parts=[
-            navigation([part for part in PLACES if part[0] not in missing]),
+            navigation([part for part in PLACES if part[0] in (*always, *drawn)]),
             setup_section(place, sequence, remarks),
             section("computation", "Computation", facts(place, sequence)),
-            *(plots(data, sequence.slip.sizes["x_m"]) if data else []),
+            *drawn.values(),
             events_section(place, sequence),
         ],
         data={"runs": [], "sequence": data} if data else {},

@@ -73,9 +73,8 @@ function drawSlips({units, slip, events}) {
 const NO_CONTACT = 255; // code of a node where contact is open
 const MOST_LABELS = 24;
 
-/** Slow slip and events by turns, each from a whole number to the next; nothing under a law without a state. */
+/** Slow slip and events by turns, each from a whole number to the next. */
 function drawPhases({units, phases, events}) {
-  if (!phases) return null;
   const {x, borders, time, powers: [low, high]} = phases;
   const codes = bytesOf(phases.rates);
   const z = time.map((_, i) => Array.from(codes.subarray(i * x.length, (i + 1) * x.length),
@@ -97,8 +96,8 @@ function drawPhases({units, phases, events}) {
   return Plotly.react('phases-plot', [picture], layout, CONFIG);
 }
 
-/** Nothing on other pages. */
+/** The plots that the page has; nothing on other pages. */
 function startSequence() {
-  if (!byId('forces-plot')) return null;
-  return Promise.all([drawForces, drawExtents, drawSlips, drawPhases].map((draw) => draw(data.sequence)));
+  const plots = {'forces-plot': drawForces, 'extents-plot': drawExtents, 'slips-plot': drawSlips, 'phases-plot': drawPhases};
+  return Promise.all(Object.entries(plots).filter(([id]) => byId(id)).map(([, draw]) => draw(data.sequence)));
 }
