@@ -13,7 +13,6 @@
 
 #include "base/error.hpp"
 #include "input/entries.hpp"
-#include "input/friction_along_x.hpp"
 #include "solid/operator.hpp"
 #include "statics/plate_solver.hpp"
 
@@ -430,23 +429,6 @@ void check_path(const Sequence::Path& path) {
     throw UserError("{} must not fall: {:.12g} m comes before {:.12g} m", shears, *fall, *(fall + 1));
 }
 
-/// Slip that strengthens with the slip rate everywhere stays slow, and no event ends it.
-void require_end_of_slow_slip(const Case& config) {
-  const auto& along_x = config.friction_along_x;
-  const auto& sequence = config.sequence;
-  if (!is_slow(config) || !along_x.file.empty() || along_x.random_key != "none" ||
-      std::isfinite(sequence.end_s) || !sequence.path.times_s.empty())
-    return;
-  for (const double V_m_per_s : {0.0, inertia_slip_rate_m_per_s(config)}) {
-    const auto response = interface::state_response(config.friction, V_m_per_s);
-    if (response->b > response->a) return;
-  }
-  throw UserError(
-      "friction does not weaken with the slip rate (a >= b): slip stays slow, and no event comes; "
-      "choose {}, or a larger {}",
-      Key("sequence.end_s"), Key("friction.b"));
-}
-
 /// What makes the end of an event known, and the places at which its nodes have come to rest.
 void check_sequence(const Case& config) {
   if (!is_sequence(config)) return;
@@ -464,7 +446,6 @@ void check_sequence(const Case& config) {
         "{} = initial_pressure leaves no pressure to slow slip between events; choose none or pressure",
         Key("friction.regularisation"));
   check_path(config.sequence.path);
-  require_end_of_slow_slip(config);
   const double quiet_s = config.time.quiet_s;
   if (!(quiet_s < config.time.end_s))
     throw UserError("{} is {:g} s; with {} > 1 it must be less than {} = {:g} s: each event comes to rest",

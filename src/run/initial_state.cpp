@@ -170,6 +170,25 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
 
 namespace {
 
+/// Slip that strengthens with the slip rate everywhere stays slow, and no event ends it.
+void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate) {
+  const auto& sequence = config.sequence;
+  if (!input::is_slow(config) || std::isfinite(sequence.end_s) || !sequence.path.times_s.empty()) return;
+  auto laws = input::friction_at(config, interface_x_m(plate));
+  if (laws.empty()) laws.push_back(config.friction);
+  for (const double V_m_per_s : {0.0, input::inertia_slip_rate_m_per_s(config)}) {
+    const auto weakens = [&](const auto& law) {
+      const auto response = interface::state_response(law, V_m_per_s);
+      return response->b > response->a;
+    };
+    if (std::ranges::any_of(laws, weakens)) return;
+  }
+  throw UserError(
+      "friction does not weaken with the slip rate at any node (a >= b): slip stays slow, and no "
+      "event comes; choose {}, or a larger {}",
+      Key("sequence.end_s"), Key("friction.b"));
+}
+
 Meshes checked_meshes(const input::Case& config, bool only_interface) {
   if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
@@ -185,6 +204,7 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
+  require_end_of_slow_slip(config, meshes.plate);
   meshes.mu_s = ratios_at_rest(config, meshes.plate);
   if (!is_prestressed(config)) return meshes;
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate));

@@ -98,8 +98,8 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
     fail("blew_up", error.what());
     throw;
   } catch (const std::exception& error) {
-    // An event that came to nothing has left no folder.
-    if (resumed_ || files::is_there(event_dir(1).parent_path()))
+    // A first phase that came to nothing has left no folder.
+    if (resumed_ || files::is_there(event_dir(1)) || files::is_there(slow_history(1)))
       fail("failed", error.what());
     else
       folder_.abandon();

@@ -276,16 +276,6 @@ TEST(Schema, SlowSlipBetweenEventsNeedsAFactorisationAndAPressure) {
               HasSubstr("with a state"));
 }
 
-TEST(Schema, SlowSlipThatNoEventEndsNeedsAnEnd) {
-  const std::string strengthening =
-      "sequence.max_events = 2\nfriction.law = \"rate_and_state_aging\"\nfriction.a = 0.015\n"
-      "friction.b = ";
-  EXPECT_THAT(parse_error(strengthening + "0.015"), HasSubstr("no event comes; choose sequence.end_s"));
-  EXPECT_TRUE(is_slow(parsed(strengthening + "0.015\nsequence.end_s = 10")));
-  EXPECT_TRUE(is_slow(parsed(strengthening + "0.015\nsequence.times_s = [10]\nsequence.shears_m = [1e-5]")));
-  EXPECT_TRUE(is_slow(parsed(strengthening + "0.016")));
-}
-
 TEST(Schema, PushersReadBackFromToml) {
   Case pushed;
   pushed.plate.pusher = {0.01, 0.02};

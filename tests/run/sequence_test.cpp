@@ -341,6 +341,30 @@ TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedUnderALawWithAState) {
   expect_same_wherever_stopped(rate_and_state_case(3), 3 + 3 * 7);  // and slow slip before it
 }
 
+TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
+  auto config = rate_and_state_case(2);
+  const double a = config.friction.parameter("a");
+  const auto refused = [&] { return error_of([&] { check(config); }); };
+  config.friction.parameter("b") = a;
+  EXPECT_THAT(refused(), HasSubstr("no event comes; choose sequence.end_s"));
+  // Along x what counts is the weakest.
+  const auto along_x = [&](double a_at_end) {
+    auto& friction = config.friction_along_x;
+    friction.file = "a.csv";
+    friction.table = {"x_m,a", {0, config.plate.width_m}, {"a"}, {{a, a_at_end}}};
+  };
+  along_x(2 * a);
+  EXPECT_THAT(refused(), HasSubstr("no event comes"));
+  along_x(0.5 * a);
+  check(config);
+  along_x(2 * a);
+  config.sequence.end_s = 10;
+  check(config);
+  config.sequence.end_s = infinity;
+  config.sequence.path = {{10}, {1e-6}};
+  check(config);
+}
+
 /// Friction that strengthens: rows come until the time at which it ends.
 TEST(SequenceInAFolder, LongSlowSlipTellsHowFarItHasCome) {
   const test::TemporaryFolder folder;
@@ -408,6 +432,23 @@ TEST(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
   const auto dir = folder / "out";
   EXPECT_THROW(start_sequence(dir, config, failing), WriteError);
   EXPECT_TRUE(fs::exists(dir / "unfinished" / "events" / "0001" / "unfinished" / "interface.h5"));
+  resume_sequence_in(dir);
+  start_sequence(folder / "whole", config);
+  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+}
+
+TEST(SequenceInAFolder, WhatTheFirstSlowSlipHasComeToIsKept) {
+  const test::TemporaryFolder folder;
+  const auto config = rate_and_state_case(2);
+  SessionHooks failing = undisturbed;
+  int n_asked = 0;
+  failing.request = [&] {
+    if (++n_asked == 50) throw WriteError("the disk is full");
+    return Request::none;
+  };
+  const auto dir = folder / "out";
+  EXPECT_THROW(start_sequence(dir, config, failing), WriteError);
+  EXPECT_TRUE(fs::exists(dir / "unfinished" / "slow" / "0001" / "interface.h5"));
   resume_sequence_in(dir);
   start_sequence(folder / "whole", config);
   EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
