@@ -133,11 +133,12 @@ motion::Loads starting_loads(const input::Case& config, const statics::Equilibri
     loads.prestress_p_Pa = state.tractions.p_s_Pa;
     loads.prestress_rate = {config.prestress.t_rate_Pa_per_s, config.prestress.p_rate_Pa_per_s};
   }
+  const auto tributary_m = mesh::tributary_lengths_m(mesh);
   if (input::is_sequence(config))
-    loads.light_Pa = motion::light_pressure_Pa(state.tractions.p_s_Pa, mesh::tributary_lengths_m(mesh));
+    loads.light_Pa = motion::light_pressure_Pa(state.tractions.p_s_Pa, tributary_m);
   loads.trigger = config.trigger;
-  loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh,
-                                                        mesh::tributary_lengths_m(mesh));
+  loads.trigger_force_N_per_m =
+      starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh, tributary_m);
   loads.intact = intact_shares(config, state, mesh);
   if (is_forced(config)) {
     for (const auto n : mesh.interface_nodes)

@@ -54,6 +54,26 @@ void add_works(const InitialState& initial, const statics::Equilibrium& from, co
   sum.top_work += force_N_per_m * (to.shear_m - from.shear_m);
 }
 
+/// Finds where a quantity turns: where it has come back from an extreme by some amount.
+class TurnFinder {
+ public:
+  /// Of a quantity that rises at first.
+  TurnFinder(double start, double amount) : extreme_(start), amount_(amount) {}
+
+  /// @return whether it has turned since the last value
+  bool see(double value) {
+    const double back = direction_ * (extreme_ - value);
+    if (back > 0 && back < amount_) return false;
+    extreme_ = value;
+    if (back <= 0) return false;
+    direction_ = -direction_;
+    return true;
+  }
+
+ private:
+  double extreme_, amount_, direction_ = 1;
+};
+
 void add_event_works(const record::Energies& of_event, record::Energies& sum) {
   for (const auto& term : record::energy_terms)
     if (term.kind == record::EnergyKind::work) sum.*term.member += of_event.*term.member;
@@ -234,7 +254,6 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   // Rows of the loading come where the fastest slip rate has doubled or halved and where F_S/F_N turns, those
   // of the interface by steps.
   constexpr double row_factor = 2;
-  const double turn = 0.01 * std::ranges::min(slow_->friction().a());
   constexpr std::int64_t steps_per_row = 4;
   const auto from = loading_.back();
   const auto& state = slow_->state();
@@ -249,22 +268,11 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     slow_rows(row);
   };
   const auto friction = [&] {
-    double shear = 0, normal = 0;
-    for (std::size_t k = 0; k < initial_.tributary_m.size(); ++k) {
-      shear += state.t_Pa[k] * initial_.tributary_m[k];
-      normal += state.p_Pa[k] * initial_.tributary_m[k];
-    }
-    return shear / normal;
+    const auto force = statics::contact_force(state.p_Pa, state.t_Pa, initial_.tributary_m);
+    return force.shear_N_per_m / force.normal_N_per_m;
   };
   slow_->start(held_.time_s, held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
-  double extreme = friction(), direction = 1;
-  const auto has_turned = [&] {
-    const double back = direction * (extreme - friction());
-    if (back > 0 && back < turn) return false;
-    extreme = friction();
-    if (back > 0) direction = -direction;
-    return back > 0;
-  };
+  TurnFinder turns(friction(), 0.01 * std::ranges::min(slow_->friction().a()));
   const auto n_before = slow_->n_steps();
   give_row();
   const auto after_step = [&] {
@@ -272,8 +280,8 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
       throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after the tilt", state.time_s));
     if ((slow_->n_steps() - n_before) % steps_per_row == 0) give_row();
     const double rate = state.fastest_m_per_s();
-    const bool turned = has_turned();
-    if (turned || rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
+    const bool has_turned = turns.see(friction());
+    if (has_turned || rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
       loading_.push_back(slow_row(LoadingPhase::creeps, from));
       row_rate_m_per_s = rate;
     }

@@ -39,13 +39,18 @@ bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double oth
   return ratio * other_mu_s > other_ratio * mu_s;
 }
 
-ContactForce contact_force(const Equilibrium& state, std::span<const double> tributary_m) {
+ContactForce contact_force(std::span<const double> p_Pa, std::span<const double> t_Pa,
+                           std::span<const double> tributary_m) {
   ContactForce force;
   for (std::size_t k = 0; k < tributary_m.size(); ++k) {
-    force.normal_N_per_m += state.tractions.p_s_Pa[k] * tributary_m[k];
-    force.shear_N_per_m += state.tractions.t_s_Pa[k] * tributary_m[k];
+    force.normal_N_per_m += p_Pa[k] * tributary_m[k];
+    force.shear_N_per_m += t_Pa[k] * tributary_m[k];
   }
   return force;
+}
+
+ContactForce contact_force(const Equilibrium& state, std::span<const double> tributary_m) {
+  return contact_force(state.tractions.p_s_Pa, state.tractions.t_s_Pa, tributary_m);
 }
 
 namespace {

@@ -62,7 +62,9 @@ bool is_possible(const Equilibrium& state, const std::vector<double>& x_m, std::
 struct ContactForce {
   double normal_N_per_m = 0, shear_N_per_m = 0;
 };
-/// @param tributary_m  [interface nodes]
+/// Lists [interface nodes].
+ContactForce contact_force(std::span<const double> p_Pa, std::span<const double> t_Pa,
+                           std::span<const double> tributary_m);
 ContactForce contact_force(const Equilibrium& state, std::span<const double> tributary_m);
 
 /// Whether a ratio t/p is a larger share of its mu_s than another one of its own.

@@ -185,8 +185,8 @@ def test_a_machine_too_stiff_for_events_is_told(program, write_case):
     case = write_case(block + slow)
     modulus_Pa = 2.6e9 / (2 * 1.37)
     stiff_m = (0.02 - 0.01) * 5e6 / (modulus_Pa / 0.05)
-    told = "block and machine have 1.25 times the critical stiffness (b - a) p/d_c"
-    assert told in notes_of(program, case, f"friction.d_c_m={1.25 * stiff_m}")
+    note = "block and machine have 1.25 times the critical stiffness (b - a) p/d_c"
+    assert note in notes_of(program, case, f"friction.d_c_m={1.25 * stiff_m}")
     assert "critical stiffness" not in notes_of(program, case, f"friction.d_c_m={0.8 * stiff_m}")
     yielding = (f"friction.d_c_m={1.25 * stiff_m}", "loading.shear_stiffness_Pa=1e9")
     assert "critical stiffness" not in notes_of(program, case, *yielding)

@@ -274,8 +274,7 @@ def test_forces_are_told_with_their_displacements(tmp_path):
 def test_the_machine_and_the_path_are_told(pair, tables, says):
     run = thin_run(pair)
     case = run.case | {name: run.case.get(name, {}) | table for name, table in tables.items()}
-    told, before = setup.loads(replace(run, case=case)), setup.loads(run)
-    assert told == before + says
+    assert setup.loads(replace(run, case=case)) == setup.loads(run) + says
 
 
 def test_info_tells_the_machine_and_the_path(tmp_path):

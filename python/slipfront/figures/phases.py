@@ -16,7 +16,7 @@ RATE_RANGE_M_PER_S = (1e-12, 1.0)
 
 @dataclass(frozen=True)
 class Phases:
-    """Slip rates of phase after phase, slow slip and events by turns. Phase k goes from level k to k + 1:
+    """Slip rates of phase after phase, slow slip and events alternately. Phase k goes from level k to k + 1:
     slow slip evenly over the steps of its history, which are shorter where it is faster, an event over
     time."""
 

@@ -87,21 +87,21 @@ def draw_phases(figure: Figure, ax: Axes, sequence: OpenSequence) -> None:
     labels = [f"{1 + k}: {t:.6g} s" for k, t in zip(shown, begin_s, strict=True)]
     ax.set_yticks(1.5 + 2 * shown, labels)
     ax.tick_params(axis="y", length=0)
-    ax.set(xlabel="$x$ (mm)", ylabel="slow slip and events by turns")
+    ax.set(xlabel="$x$ (mm)", ylabel="slow slip and events, alternately")
     figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="min", pad=0.02, aspect=40)
 
 
 def sequence(of: OpenSequence) -> Drawing:
-    is_slow, is_eventful = len(of.slow) > 0, of.events.sizes["event"] > 0
-    left, right = ("abc", "d") if is_eventful else ("a", "b")
-    figure = style.new_figure(style.PAGE_MM, 150 if is_slow and is_eventful else 62)
+    is_slow, has_events = len(of.slow) > 0, of.events.sizes["event"] > 0
+    left, right = ("abc", "d") if has_events else ("a", "b")
+    figure = style.new_figure(style.PAGE_MM, 150 if is_slow and has_events else 62)
     if is_slow:
         panels = figure.subplot_mosaic(";".join(letter + right for letter in left), width_ratios=(1, 1.5))
     else:
         panels = figure.subplot_mosaic(left)
     draw_force(panels["a"], of)
     caption = "(a) Shear over normal force along the loading."
-    if is_eventful:
+    if has_events:
         draw_extents(panels["b"], of)
         draw_slip(panels["c"], of)
         caption += (

@@ -193,9 +193,9 @@ def thinning(data: dict[str, Any], n_nodes: int) -> str:
 PHASES_SECTION = section(
     "phases",
     "Slip rates",
-    plot("phases-plot", "Slip rate over place and over slow slip and events by turns"),
-    "<p>Upward slow slip and events by turns: slow slip evenly over the steps of the computation, which are "
-    "shorter where it is faster; above each orange line an event over its time. Grey: contact is open. "
+    plot("phases-plot", "Slip rate over place and over slow slip and events alternately"),
+    "<p>Upward slow slip and events alternately: slow slip evenly over the steps of the computation, which "
+    "are shorter where it is faster; above each orange line an event over its time. Grey: contact is open. "
     "Rows are left out evenly.</p>",
 )
 

@@ -73,7 +73,7 @@ function drawSlips({units, slip, events}) {
 const NO_CONTACT = 255; // code of a node where contact is open
 const MOST_LABELS = 24;
 
-/** Slow slip and events by turns, each from a whole number to the next. */
+/** Slow slip and events alternately, each from a whole number to the next. */
 function drawPhases({units, phases, events}) {
   const {x, borders, time, powers: [low, high]} = phases;
   const codes = bytesOf(phases.rates);
