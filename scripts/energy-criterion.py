@@ -20,9 +20,12 @@ from slipfront.files import read_table
 from slipfront.folder import result_file
 from slipfront.read import Front, Run, read_run
 
-AMOUNTS = ("2", "5", "10", "20", "40")
-WEAK, CHOSEN = "2", "20"
-COLOURS = dict(zip(AMOUNTS, ("#d55e00", "#e69f00", "#009e73", "#0072b2", "#332288"), strict=True))
+AMOUNTS = ("5", "10", "20", "40", "80")
+CHOSEN, HELD = "chosen", "chosen, but held"
+TRIGGERS = (*(f"amount {amount}" for amount in AMOUNTS), CHOSEN, HELD)
+COLOURS = dict(
+    zip(TRIGGERS, ("#d55e00", "#e69f00", "#009e73", "#56b4e9", "#332288", "#0072b2", "#cc79a7"), strict=True)
+)
 #: Line by l* in mm.
 SPEED_LENGTH_LINES: dict[str, style.Line] = {
     "0.67": "-",
@@ -101,13 +104,13 @@ def percent(value: float) -> str:
     return "-" if np.isnan(value) else f"{value:.0f} %"
 
 
-def row(amount: str, others: list[MainFront], left: MainFront) -> list[str]:
+def row(trigger: str, others: list[MainFront], left: MainFront) -> list[str]:
     fronts = [*others, left]
     by_energy = bins_of(fronts, "energy_rise")
     shared = [bin_ for bin_ in by_energy if len(others) in bin_]
     peak = int(np.argmax(np.where(left.counts, left.front.static_ratio, -np.inf)))
     return [
-        f"with the left-triggered front, amount {amount}",
+        f"with the left-triggered front, {trigger}",
         f"{left.speed[left.counts].max():.2f} c_L",
         f"{left.pressure_d_over_s[peak]:.2f}",
         *(percent(spread(bins_of(fronts, criterion))) for criterion in CRITERIA.values()),
@@ -142,7 +145,7 @@ def table(others: list[MainFront], lefts: dict[str, MainFront]) -> str:
         "bins of the energy rise that left shares",
         "spread in these",
     ]
-    rows = [row(amount, others, left) for amount, left in lefts.items()]
+    rows = [row(trigger, others, left) for trigger, left in lefts.items()]
     rows.append(row_without(others))
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     return "\n".join([*lines, *("| " + " | ".join(cells) + " |" for cells in rows)]) + "\n"
@@ -162,10 +165,10 @@ def check_against(scorecard: Path, others: list[MainFront], left: MainFront) -> 
 
 
 def draw_over_x(speeds: Axes, pressures: Axes, lefts: dict[str, MainFront]) -> None:
-    for amount, left in lefts.items():
+    for trigger, left in lefts.items():
         x, shown = style.mm(left.front.x_m), left.counts
         for ax, y in ((speeds, left.speed), (pressures, left.pressure_d_over_s)):
-            ax.plot(x[shown], y[shown], color=COLOURS[amount], label=f"amount {amount}")
+            ax.plot(x[shown], y[shown], color=COLOURS[trigger], label=trigger)
     speeds.axhline(1, **style.REFERENCE)
     run = lefts[CHOSEN].run
     peak_mm = style.mm(run.static_x_m[np.nanargmax(np.where(run.static_x_m > 0.1, run.static_ratio, np.nan))])
@@ -186,7 +189,7 @@ def draw_over_rise(
     curve = paper["a"] + paper["b"] * np.exp(-paper["c"] * np.sqrt(rise))
     ax.fill_between(rise, curve - paper["a_band"], curve + paper["a_band"], color="0.9", zorder=0)
     points = [("black", front) for front in others]
-    points += [(COLOURS[amount], left) for amount, left in lefts.items() if amount in (WEAK, CHOSEN)]
+    points += [(COLOURS[trigger], lefts[trigger]) for trigger in (CHOSEN, HELD)]
     for colour, front in points:
         for rises, face in ((True, colour), (False, "none")):
             part = front.counts & (front.accelerates == rises)
@@ -211,8 +214,8 @@ def draw_over_rise(
             for colour, face, label in (
                 ("black", "black", "the other fronts, accelerating"),
                 ("black", "none", "and decelerating"),
-                (COLOURS[WEAK], COLOURS[WEAK], f"left, amount {WEAK}"),
-                (COLOURS[CHOSEN], COLOURS[CHOSEN], f"left, amount {CHOSEN}"),
+                (COLOURS[CHOSEN], COLOURS[CHOSEN], f"left, {CHOSEN}"),
+                (COLOURS[HELD], COLOURS[HELD], f"left, {HELD}"),
             )
         ],
     )
@@ -237,7 +240,7 @@ def draw_speed_lengths(ax: Axes, results: Path) -> None:
                 for mm, line in SPEED_LENGTH_LINES.items()
             ),
             Line2D([], [], color="black", label="spontaneous, to $-x$"),
-            Line2D([], [], color=COLOURS[CHOSEN], label=f"left, amount {CHOSEN}"),
+            Line2D([], [], color=COLOURS[CHOSEN], label="left"),
         ],
     )
 
@@ -246,11 +249,14 @@ def write(results: Path, page: Path, picture: Path) -> None:
     checked(picture)
     with expecting("results of a reproduction", results), matplotlib.rc_context(style.RC):
         others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
-        folders = {amount: results / "studies/trigger_amount" / amount / "left" for amount in AMOUNTS}
         lefts = {
-            amount: first_front(folder, "event.trigger_amount", float(amount))
-            for amount, folder in folders.items()
+            f"amount {amount}": first_front(
+                results / "studies/trigger_amount" / amount / "left", "event.trigger_amount", float(amount)
+            )
+            for amount in AMOUNTS
         }
+        lefts[CHOSEN] = read_main_fronts(results / "left")[0]
+        lefts[HELD] = read_main_fronts(results / "studies/trigger_duration/inf/left")[0]
         check_against(results / "scorecard.json", others, lefts[CHOSEN])
         figure = style.new_figure(style.PAGE_MM, 140)
         axes = figure.subplots(2, 2)

@@ -13,7 +13,7 @@ from shared import renew_page, renew_tables
 
 PAGE_WIDTH = 120  # of the docs' lines
 #: Tests of claims that were not used to choose.
-EVIDENCE_CLAIMS = ("C14", "C15", "C16", "C17", "C18c", "C19", "C19b", "C20", "C20b", "C21", "C21+")
+EVIDENCE_CLAIMS = "C12 C14 C15 C16 C17 C18b C18c C19 C19b C20 C20b C21 C21+".split()
 
 
 def told(value: Any) -> str:
@@ -35,16 +35,19 @@ def table(header: list[str], rows: list[list[str]]) -> str:
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
-def in_use(choice: dict[str, Any], values: dict[str, Any]) -> bool:
+def in_use(choice: dict[str, Any], values: dict[str, Any], choices: dict[str, dict[str, Any]]) -> bool:
     """Whether a choice has a part among such values."""
-    return not choice["decided_by"] or values[choice["decided_by"]] in choice["counts_with"]
+    decider = choice["decided_by"]
+    if not decider:
+        return True
+    return values[decider] in choice["counts_with"] and in_use(choices[decider], values, choices)
 
 
 def choices(study: dict[str, Any]) -> str:
-    region, chosen = study["region"], study["chosen"]
+    chosen = study["chosen"]
+    by_name = {choice["name"]: choice for choice in study["choices"]}
     rows = []
-    for choice in study["choices"]:
-        name = choice["name"]
+    for name, choice in by_name.items():
         rows.append(
             [
                 f"`{name}`",
@@ -52,11 +55,11 @@ def choices(study: dict[str, Any]) -> str:
                 listed(choice["levels"]),
                 choice["why"],
                 told(choice["standard"]),
-                range_of(region[name]) or "-",
-                told(chosen["values"][name]) if chosen and in_use(choice, chosen["values"]) else "-",
+                range_of(study["region"].get(name, [])) or "-",
+                told(chosen["values"][name]) if chosen and in_use(choice, chosen["values"], by_name) else "-",
             ]
         )
-    return table(["choice", "key", "range", "reason", "standard", "region found", "chosen"], rows)
+    return table(["choice", "key", "range", "reason", "standard", "region", "chosen"], rows)
 
 
 def fit_of(outcome: dict[str, Any]) -> list[str]:
@@ -66,32 +69,93 @@ def fit_of(outcome: dict[str, Any]) -> list[str]:
     return [f"{fit[k]['value']:.2f} [{fit[k]['low']:.2f}, {fit[k]['high']:.2f}]" for k in "abc"]
 
 
+def number(value: float | None, form: str, factor: float = 1) -> str:
+    return "-" if value is None else f"{factor * value:{form}}"
+
+
+OUTCOME_HEADER = [
+    "work (J/m)",
+    "C25",
+    "wave; lowest behind it (m/s)",
+    "left maximum (c_L); over spontaneous, right",
+    "C18b: rms (c_L), in the band",
+    "a",
+    "b",
+    "c",
+    "C18c: spread at equal energy rise, t_d/p_d, t_s/p_s",
+]
+
+
+def outcome_row(outcome: dict[str, Any]) -> list[str]:
+    left, peak, gap = (outcome[k] for k in ("left_max_over_c_L", "circle_peak_m_per_s", "circle_gap"))
+    others = [outcome[f"{event}_max_over_c_L"] for event in ("spontaneous", "right")]
+    ratios = ", ".join(number(left / other if other else None, ".0f", 100) for other in others)
+    spreads = (outcome[f"spread_at_{name}"] for name in ("energy_rise", "t_d_over_p_d", "t_s_over_p_s"))
+    holds = outcome["claims"]["C25"]
+    return [
+        number(outcome["left_work_J_per_m"], ".0f"),
+        "-" if holds is None else "holds" if holds else "does not",
+        "none" if peak is None else f"{peak:.1f}; {peak * gap:.1f}",
+        f"{number(left, '.2f')}; {ratios} %",
+        f"{number((outcome['fit'] or {}).get('rms_over_c_L'), '.3f')}, "
+        f"{number(outcome['share_in_band'], '.0f', 100)} %",
+        *fit_of(outcome),
+        ", ".join(number(spread, ".0f", 100) for spread in spreads) + " %",
+    ]
+
+
+def known(study: dict[str, Any]) -> str:
+    """The left triggers by which the rule was found, and the chosen one."""
+
+    def words(values: dict[str, Any]) -> str:
+        end = "held" if values["left_end"] == "held" else f"{1e6 * values['left_duration_s']:.2g} us"
+        amount = values[f"left_{values['left_form']}"]
+        return f"{values['left_form']}: {1e3 * values['left_zone_m']:.2g} mm, {amount:.2g}, {end}"
+
+    rows = [[words(outcome["values"]), *outcome_row(outcome)] for outcome in study["known"]]
+    if chosen := study["chosen"]:
+        rows.append([f"**chosen**, {words(chosen['values'])}", *outcome_row(chosen)])
+    return table(["left trigger", *OUTCOME_HEADER], rows)
+
+
+def meshes(study: dict[str, Any]) -> str:
+    """The chosen triggers by element size."""
+
+    def size_mm(outcome: dict[str, Any]) -> float:
+        return 1e3 * outcome["values"]["element_size_m"]
+
+    def differs_by_mesh(outcome: dict[str, Any]) -> bool:
+        values, chosen = outcome["values"], study["chosen"]["values"]
+        return {name for name in values if values[name] != chosen[name]} == {"element_size_m"}
+
+    if not study["chosen"]:
+        return "Nothing was chosen.\n"
+    about = [outcome for outcome in study["about"] if differs_by_mesh(outcome)]
+    outcomes = sorted([study["chosen"], *study["finer"], *about], key=size_mm)
+    rows = []
+    for outcome in outcomes:
+        failing = [claim for claim in study["constraints"] if outcome["claims"][claim] is False]
+        cells = [f"{size_mm(outcome):.3g} mm", *outcome_row(outcome)[1:]]
+        rows.append([*cells, ", ".join(failing) or "none"])
+    return table(["elements", *OUTCOME_HEADER[1:], "constraints that fail"], rows)
+
+
 def outcomes(study: dict[str, Any]) -> str:
-    rows = [["paper", "0.76 (band 0.07)", "1.80", "3.05", "", ""]]
-    for name in ("standard", "chosen"):
-        outcome = study[name]
-        if outcome:
-            holds = "hold" if outcome["constraints_hold"] else "do not all hold"
-            holds += ", Fig. 6 agrees" if outcome["agrees_with_fig6"] else ", Fig. 6 does not agree"
-            rows.append([name, *fit_of(outcome), f"{100 * outcome['share_in_band']:.0f} %", holds])
     impossible = study["n_impossible"]
     counts = f"{study['n_samples']} samples, {study['n_runs']} runs"
     if study["quick"]:
         counts += " with elements of 4 mm, to try the command"
     if impossible:
         counts += f"; {impossible} more samples have fillets too small for their elements"
-    n_constrained, n_region = study["n_constrained"], study["n_region"]
-    if study["evidence"][0]["n"] == 0:
-        region = "they are the region, since none agrees with Fig. 6"
-    else:
-        region = f"the {n_region} of them that agree with Fig. 6 are the region"
     counts += (
-        f". Of the {study['n_triggers']} samples of triggers {study['n_triggers_with_fronts']} start a "
-        f"front at both edges, and C1 to C11 hold for {study['n_triggers_slow_left']}. The constraining "
-        f"claims hold for {n_constrained} samples; {region}."
+        f". Of the {study['n_left']} left triggers {study['n_left_with_fronts']} start a front; the constraints "
+        f"but C25 hold for {study['n_left_others_hold']}, all of them for {study['n_left_region']}, the region, of "
+        f"which {study['n_left_alike']} have the most frequent form and end. Of the {study['n_right']} right triggers "
+        f"the constraints hold for {study['n_right_region']}, {study['n_right_alike']} of them of the left one's "
+        f"form and end. C1 to C11 hold for {study['n_triggers_slow_left']} of the first "
+        f"{study['n_triggers']} left triggers (C11b)."
     )
-    lines = textwrap.fill(counts, PAGE_WIDTH, break_on_hyphens=False)
-    return lines + "\n\n" + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
+    return textwrap.fill(counts, PAGE_WIDTH, break_on_hyphens=False) + "\n"
 
 
 def told_range(values: list[float | None], factor: float, form: str, unit: str) -> str:
@@ -99,12 +163,12 @@ def told_range(values: list[float | None], factor: float, form: str, unit: str) 
     if None in values:
         return "-"
     least, median, largest = (f"{factor * value:{form}}" for value in values if value is not None)
-    return f"{median} {unit} ({least} to {largest})"
+    return f"{median} {unit}".rstrip() + f" ({least} to {largest})"
 
 
 def evidence(study: dict[str, Any]) -> str:
     """What was not used to choose, a column for each group of samples."""
-    groups = study["evidence"][:2]  # not those with the left trigger held and taken away
+    groups = study["evidence"]
 
     def row(heading: str, cell: Callable[[dict[str, Any]], str]) -> list[str]:
         return [heading, *(cell(group) if group["n"] else "-" for group in groups)]
@@ -127,6 +191,8 @@ def evidence(study: dict[str, Any]) -> str:
         spread("(U_r-U_s)/U_s", "energy_rise"),
         spread("t_d/p_d", "t_d_over_p_d"),
         spread("t_s/p_s", "t_s_over_p_s"),
+        row("points in the paper's band", lambda group: told_range(group["share_in_band"], 100, ".0f", "%")),
+        *(row(name, lambda group, name=name: told_range(group[name], 1, ".2f", "")) for name in "abc"),
         row("a, b and c of the paper in our intervals", lambda group: f"{group['n_paper_fit_in_intervals']}"),
         *(holding(claim) for claim in EVIDENCE_CLAIMS),
         row(
@@ -134,11 +200,12 @@ def evidence(study: dict[str, Any]) -> str:
             lambda group: told_range(group["difference_of_kinds_over_c_L"], 1, ".2f", "c_L"),
         ),
     ]
-    return table(["samples for which hold", *(group["samples"] for group in groups)], rows)
+    return table(["left triggers", *(group["samples"] for group in groups)], rows)
 
 
 def tables(study: dict[str, Any]) -> dict[str, str]:
-    return {"choices": choices(study), "outcomes": outcomes(study), "evidence": evidence(study)}
+    parts = {"choices": choices, "outcomes": outcomes, "evidence": evidence, "known": known, "meshes": meshes}
+    return {name: part(study) for name, part in parts.items()}
 
 
 def write(results: Path, page: Path) -> None:

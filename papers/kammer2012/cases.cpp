@@ -195,7 +195,7 @@ std::vector<Study> trigger_studies() {
   const std::vector<Sweep> sweeps = {{"trigger_amount",
                                       "event.trigger_amount",
                                       "strength of the trigger",
-                                      {2, 5, 10, 20, 40},
+                                      {5, 10, 20, 40, 80},
                                       [](input::Case& c, double v) { c.trigger.amount = v; }},
                                      {"trigger_zone",
                                       "event.trigger_zone_m",
@@ -205,12 +205,12 @@ std::vector<Study> trigger_studies() {
                                      {"trigger_ramp",
                                       "event.trigger_ramp_s",
                                       "rise time of the trigger",
-                                      {1e-6, 5e-6, 10e-6},
+                                      {0.1e-6, 0.5e-6, 2e-6},
                                       [](input::Case& c, double v) { c.trigger.ramp_s = v; }},
                                      {"trigger_duration",
                                       "event.trigger_duration_s",
-                                      "trigger taken away again",
-                                      {15e-6, 30e-6, 60e-6},
+                                      "how long the trigger lasts",
+                                      {2e-6, 5e-6, 15e-6, infinity},
                                       [](input::Case& c, double v) { c.trigger.duration_s = v; }}};
   return make_studies(sweeps, triggered_events, false);
 }
@@ -268,7 +268,7 @@ std::vector<Variation> variations(bool quick) {
       c.title += fmt::format(", {} = {:g}", key, value);
     };
     for (auto& c : variation.events) {
-      c.config.output.snapshot_times_s.clear();
+      if (c.config.event != interface::EventKind::left) c.config.output.snapshot_times_s.clear();
       vary(c.config);
     }
     for (auto& study : studies(quick)) {

@@ -6,6 +6,7 @@
 
 #include "base/numbers.hpp"
 #include "fronts/measures.hpp"
+#include "papers/kammer2012/circle.hpp"
 
 namespace slipfront::kammer2012 {
 
@@ -25,6 +26,11 @@ Outcome make_outcome(const std::string& name, const run::Result& result, const r
   o.critical_shear_m = initial.critical_shear_m;
   o.ramp_critical_shear_m = initial.ramp ? initial.ramp->spontaneous.shear_m : nan;
   o.ramp_onsets = initial.ramp ? initial.ramp->record.n_onsets() : 0;
+
+  o.trigger_work_J_per_m = result.event.energies.empty() ? nan : result.event.energies.back().trigger_work;
+  if (o.config.event == interface::EventKind::left)
+    o.waves = waves_on_rays(result.event.snapshots, initial.mesh, o.contact_from_m,
+                            o.contact_from_m + o.config.trigger.zone_m);
 
   o.first_onset_x_m = nan;
   double first_s = infinity;

@@ -5,11 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "fronts/fit.hpp"
 #include "papers/kammer2012/cases.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::kammer2012 {
+
+/// The outermost maximum of |v| of at least min_peak_m_per_s on a ray from the plate's left corner.
+struct WaveOnRay {
+  double time_s = 0, angle_deg = 0;
+  double distance_m = nan;    ///< from the nearest place of the trigger zone; NaN: no such maximum
+  double peak_m_per_s = nan;  ///< |v| there
+  double lowest_behind_m_per_s =
+      nan;  ///< least |v| on the way back to where it is exceeded, or to the corner
+};
 
 /// What analysis needs of a run, without its histories and fields.
 struct Outcome {
@@ -25,6 +35,8 @@ struct Outcome {
   double critical_shear_m = 0;
   double ramp_critical_shear_m = 0;  ///< NaN where there was no ramp
   std::size_t ramp_onsets = 0;       ///< beginnings of slip at the edges during the ramp
+  double trigger_work_J_per_m = 0;   ///< NaN without energies
+  std::vector<WaveOnRay> waves;      ///< of each snapshot; triggered at the left edge alone
 
   bool triggered() const { return interface::is_at_edge(config.event); }
 };

@@ -54,7 +54,7 @@ class Runner {
           outcomes[k] = make_outcome(config_name(name), result, initial);
           wanted(name);
         },
-        [&](std::size_t k) { return is_written(dir_ / cases[k].name); });
+        [&](std::size_t k) { return !needs_snapshots(configs[k]) && is_written(dir_ / cases[k].name); });
     return outcomes;
   }
 
@@ -85,6 +85,11 @@ class Runner {
     if (!name.empty()) ++done_;
     interrupted_ = !monitor_(done_, total_, name) || interrupted_;
     return !interrupted_;
+  }
+
+  /// Whether the outcome is that of a run with its snapshots (C25), which are not kept.
+  static bool needs_snapshots(const input::Case& config) {
+    return config.event == interface::EventKind::left && !config.output.snapshot_times_s.empty();
   }
 
   /// Whether a run's folder is complete and as it was written.

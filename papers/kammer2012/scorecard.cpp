@@ -12,6 +12,7 @@
 
 #include "base/numbers.hpp"
 #include "fronts/measures.hpp"
+#include "papers/kammer2012/circle.hpp"
 #include "papers/kammer2012/evidence.hpp"
 #include "papers/kammer2012/second_tests.hpp"
 
@@ -105,6 +106,7 @@ class Scorecard {
     transition_parameter();
     longitudinal_wave();
     global_friction();
+    wave_stands_apart();
     experiment();
     std::ranges::move(second_tests(r_, claims_), std::back_inserter(claims_));
     choose_verdicts(claims_);
@@ -784,6 +786,33 @@ class Scorecard {
             "the plate loaded on until all nodes inside slip in one event: largest F_S/F_N before it at "
             "most {:g} mu_s, for both mu_k",
             most_of_local));
+  }
+
+  void wave_stands_apart() {
+    const auto wave = circle(r_.left);
+    const char* claim = "the longitudinal wave of the left trigger is a light circle apart from what follows";
+    const auto how = fmt::format(
+        "snapshots every {:g} us while the left-triggered tip is between {:g} and {:g} mm, rays of 30 and 45 "
+        "degrees from the left corner: in at least {} of the snapshots, on both rays, the outermost maximum "
+        "of "
+        "the velocity from {:g} m/s on lies within {} of c_L (t - t_trigger) from the trigger zone, and the "
+        "lowest velocity behind it, before it is exceeded, is at most {:g} of it",
+        wave_interval_s * 1e6, tip_from_m * mm, tip_to_m * mm, percent(min_share_of_snapshots),
+        min_peak_m_per_s, percent(max_off_c_L_t), max_gap);
+    if (!wave) {
+      add("C25", claim, "Fig. 3a", "not tested: no snapshots", {}, std::nullopt, how);
+      return;
+    }
+    add("C25", claim, "Fig. 3a",
+        fmt::format(
+            "in {} of {} snapshots; medians: {:.1f} m/s, at {:.2f} c_L (t - t_trigger), lowest behind "
+            "{:.2f} of it",
+            wave->n_apart, wave->n_snapshots, wave->peak_m_per_s, wave->over_c_L_t, wave->gap),
+        {{"share", 100.0 * wave->n_apart / wave->n_snapshots, "%"},
+         {"peak", wave->peak_m_per_s, "m/s"},
+         {"lowest behind", wave->gap, ""}},
+        wave->holds(), how);
+    claims_.back().used_to_choose = true;
   }
 
   const Reproduction& r_;

@@ -79,9 +79,8 @@ std::array<Claim, 2> collapse_of_main_fronts(std::span<const MainFront> mains, s
   Claim fit =
       second_test(first, "C18", "its points are those of late fronts in the wake of others, too",
                   fmt::format("main fronts without their last {:g} mm: (a) and (b) as C18", tail_m * mm));
-  fit.used_to_choose = true;
   Claim order = second_test(
-      first, "C18", "(a) and (b) choose the trigger that the text does not give; this does not",
+      first, "C18", "a curve is one thing, which quantity orders the speeds another",
       fmt::format("main fronts without their last {:g} mm: the median relative spread of V_tip between the "
                   "fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal t_s/p_s",
                   tail_m * mm),

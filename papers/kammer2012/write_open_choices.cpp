@@ -32,29 +32,35 @@ std::string verdict_text(std::optional<bool> holds) {
   return holds ? (*holds ? "holds" : "does not") : "";
 }
 
+double circle_value(const SampleOutcome& o, double Circle::*member) {
+  return o.circle ? (*o.circle).*member : nan;
+}
+
 std::string csv(const OpenChoicesResult& result) {
   std::string text = "set";
   for (const auto& choice : result.choices) text += fmt::format(",{}", choice.name);
   text +=
-      ",constraints,fig6,distance,share_in_band,extremity,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
+      ",constraints,constraints_but_C25,distance,share_in_band,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
       "rms_over_c_L,spread_at_energy_rise,spread_at_t_d_over_p_d,spread_at_t_s_over_p_s,"
-      "difference_of_kinds_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L";
+      "difference_of_kinds_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L,"
+      "left_work_J_per_m,circle_peak_m_per_s,circle_gap";
   for (const auto& id : result.claims) text += fmt::format(",{}", id);
   text += "\n";
   for (const auto& o : result.outcomes) {
     text += name(o.sample.set);
     for (std::size_t k = 0; k < result.choices.size(); ++k)
       text += fmt::format(",{}", result.choices[k].text(o.sample.values[k]));
-    text += fmt::format(",{},{},{},{},{}", o.is_constrained ? "hold" : "do not",
-                        o.agrees_with_fig6 ? "holds" : "does not", cell(o.distance), cell(o.share_in_band),
-                        cell(o.extremity));
+    text += fmt::format(",{},{},{},{}", o.is_constrained() ? "hold" : "do not",
+                        o.others_hold ? "hold" : "do not", cell(o.distance), cell(o.share_in_band));
     const auto fit = o.fit.value_or(fronts::ExponentialFit{});
     for (const auto* e : {&fit.a, &fit.b, &fit.c})
       for (const double value : {e->value, e->low, e->high})
         text += fmt::format(",{}", o.fit ? cell(value) : "");
     text += fmt::format(",{}", o.fit ? cell(fit.rms) : "");
-    for (const double value : {o.spread_at_energy_rise, o.spread_at_dynamic_ratio, o.spread_at_static_ratio,
-                               o.difference_of_kinds, o.left_max, o.spontaneous_max, o.right_max})
+    for (const double value :
+         {o.spread_at_energy_rise, o.spread_at_dynamic_ratio, o.spread_at_static_ratio, o.difference_of_kinds,
+          o.left_max, o.spontaneous_max, o.right_max, o.left_work_J_per_m,
+          circle_value(o, &Circle::peak_m_per_s), circle_value(o, &Circle::gap)})
       text += fmt::format(",{}", cell(value));
     for (const auto holds : o.holds) text += fmt::format(",{}", verdict_text(holds));
     text += "\n";
@@ -103,35 +109,27 @@ std::size_t changed_choice(const Sample& sample, const Sample& standard) {
   return changed;
 }
 
-/// Of each claim: how often it holds, and at which levels of which choice, taken by itself, it turns.
+/// Of each claim: its verdict with the chosen triggers, how often it holds, and at which levels of which
+/// choice, taken by itself, it turns.
 Json matrix_json(const OpenChoicesResult& result) {
   Json list = Json::array();
-  const auto& standard = result.outcomes.front();
+  const auto& centre = result.outcomes[result.chosen().value_or(0)];
   for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
-    if (!standard.holds[claim]) continue;  // those that need studies
-    const auto turns_about = [&](Sample::Set set, const SampleOutcome& centre) {
-      Json turns = Json::array();
-      for (const auto& o : result.outcomes) {
-        if (o.sample.set != set || o.holds[claim] == centre.holds[claim]) continue;
-        const auto k = changed_choice(o.sample, centre.sample);
-        turns.push_back({{"choice", result.choices[k].name},
-                         {"level", value_json(result.choices[k], o.sample.values[k])}});
-      }
-      return turns;
-    };
-    Json about_chosen = nullptr;
-    if (result.chosen >= 0) {
-      const auto& chosen = result.outcomes[result.chosen];
-      about_chosen = {{"holds", chosen.holds[claim] ? Json(*chosen.holds[claim]) : Json(nullptr)},
-                      {"turns", turns_about(Sample::Set::about_chosen, chosen)}};
+    if (!result.outcomes.front().holds[claim]) continue;  // those that need studies
+    Json turns = Json::array();
+    for (const auto& o : result.outcomes) {
+      if (o.sample.set != Sample::Set::about_chosen || o.holds[claim] == centre.holds[claim]) continue;
+      const auto k = changed_choice(o.sample, centre.sample);
+      turns.push_back(
+          {{"choice", result.choices[k].name}, {"level", value_json(result.choices[k], o.sample.values[k])}});
     }
-    list.push_back({{"id", result.claims[claim]},
-                    {"holds", *standard.holds[claim]},
-                    {"share_of_triggers", share_json(result, Sample::Set::triggers, claim, false)},
-                    {"share_of_triggers_with_fronts", share_json(result, Sample::Set::triggers, claim, true)},
-                    {"share_of_all", share_json(result, Sample::Set::all, claim, false)},
-                    {"turns", turns_about(Sample::Set::one_at_a_time, standard)},
-                    {"about_chosen", about_chosen}});
+    list.push_back(
+        {{"id", result.claims[claim]},
+         {"holds", centre.holds[claim].value_or(false)},
+         {"share_of_triggers", share_json(result, Sample::Set::left_trigger, claim, false)},
+         {"share_of_triggers_with_fronts", share_json(result, Sample::Set::left_trigger, claim, true)},
+         {"share_of_all", share_json(result, Sample::Set::all, claim, false)},
+         {"turns", turns}});
   }
   return list;
 }
@@ -140,13 +138,25 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   Json values;
   for (std::size_t k = 0; k < result.choices.size(); ++k)
     values[result.choices[k].name] = value_json(result.choices[k], o.sample.values[k]);
+  Json claims;
+  for (std::size_t k = 0; k < result.claims.size(); ++k)
+    claims[result.claims[k]] = o.holds[k] ? Json(*o.holds[k]) : Json(nullptr);
   Json json = {{"set", name(o.sample.set)},
                {"values", values},
-               {"constraints_hold", o.is_constrained},
-               {"agrees_with_fig6", o.agrees_with_fig6},
+               {"constraints_hold", o.is_constrained()},
+               {"claims", claims},
+               {"left_max_over_c_L", number(o.left_max)},
+               {"spontaneous_max_over_c_L", number(o.spontaneous_max)},
+               {"right_max_over_c_L", number(o.right_max)},
+               {"left_work_J_per_m", number(o.left_work_J_per_m)},
+               {"circle_peak_m_per_s", number(circle_value(o, &Circle::peak_m_per_s))},
+               {"circle_gap", number(circle_value(o, &Circle::gap))},
+               {"spread_at_energy_rise", number(o.spread_at_energy_rise)},
+               {"spread_at_t_d_over_p_d", number(o.spread_at_dynamic_ratio)},
+               {"spread_at_t_s_over_p_s", number(o.spread_at_static_ratio)},
+               {"difference_of_kinds_over_c_L", number(o.difference_of_kinds)},
                {"distance", number(o.distance)},
                {"share_in_band", number(o.share_in_band)},
-               {"extremity", number(o.extremity)},
                {"fit", nullptr}};
   if (o.fit)
     json["fit"] = {{"a", number(o.fit->a)},
@@ -154,6 +164,13 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
                    {"c", number(o.fit->c)},
                    {"rms_over_c_L", o.fit->rms}};
   return json;
+}
+
+Json outcomes_json(const OpenChoicesResult& result, Sample::Set set) {
+  Json list = Json::array();
+  for (const auto& o : result.outcomes)
+    if (o.sample.set == set) list.push_back(outcome_json(result, o));
+  return list;
 }
 
 Json evidence_json(const OpenChoicesResult& result) {
@@ -172,17 +189,23 @@ Json evidence_json(const OpenChoicesResult& result) {
                     {"spread_at_energy_rise", range(e.spread_at_energy_rise)},
                     {"spread_at_t_d_over_p_d", range(e.spread_at_dynamic_ratio)},
                     {"spread_at_t_s_over_p_s", range(e.spread_at_static_ratio)},
-                    {"difference_of_kinds_over_c_L", range(e.difference_of_kinds)}});
+                    {"difference_of_kinds_over_c_L", range(e.difference_of_kinds)},
+                    {"a", range(e.a)},
+                    {"b", range(e.b)},
+                    {"c", range(e.c)},
+                    {"share_in_band", range(e.share_in_band)}});
   }
   return json;
 }
 
-/// Least and largest value in use of each choice in the region, numbers only; words that occur.
+/// Least and largest value in use of each choice of a trigger in its region, numbers only; words that occur.
 Json region_json(const OpenChoicesResult& result) {
   Json json = Json::object();
   for (std::size_t k = 0; k < result.choices.size(); ++k) {
+    if (!result.choices[k].event) continue;
+    const auto& region = *result.choices[k].event == interface::EventKind::left ? result.left : result.right;
     std::vector<double> values;
-    for (const auto place : result.region) {
+    for (const auto place : region.all) {
       const auto& sample = result.outcomes[place].sample;
       if (is_in_use(result.choices, k, sample.values)) values.push_back(sample.values[k]);
     }
@@ -201,28 +224,39 @@ Json region_json(const OpenChoicesResult& result) {
 
 void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResult& result) {
   const auto count = [&](auto&& condition) { return std::ranges::count_if(result.outcomes, condition); };
-  Json json = {{"version", version_line()},
-               {"quick", result.quick},
-               {"n_runs", result.counts.n_runs},
-               {"n_quiet", result.counts.n_quiet},
-               {"n_samples", result.outcomes.size()},
-               {"n_impossible", result.n_impossible},
-               {"constraints", constraining_claims()},
-               {"wanted_share_in_band", wanted_share_in_band},
-               {"choices", choices_json(result)},
-               {"matrix", matrix_json(result)},
-               {"n_triggers", result.triggers.n_triggers},
-               {"n_triggers_with_fronts", count([](const SampleOutcome& o) {
-                  return o.sample.set == Sample::Set::triggers && starts_fronts(o);
-                })},
-               {"n_triggers_slow_left", result.triggers.n_holding},
-               {"n_constrained", count([](const SampleOutcome& o) { return o.is_constrained; })},
-               {"n_region", result.region.size()},
-               {"evidence", evidence_json(result)},
-               {"region", region_json(result)},
-               {"standard", outcome_json(result, result.outcomes.front())},
-               {"chosen", nullptr}};
-  if (result.chosen >= 0) json["chosen"] = outcome_json(result, result.outcomes[result.chosen]);
+  Json json = {
+      {"version", version_line()},
+      {"quick", result.quick},
+      {"n_runs", result.counts.n_runs},
+      {"n_quiet", result.counts.n_quiet},
+      {"n_samples", result.outcomes.size()},
+      {"n_impossible", result.n_impossible},
+      {"constraints", constraining_claims()},
+      {"wanted_share_in_band", wanted_share_in_band},
+      {"choices", choices_json(result)},
+      {"matrix", matrix_json(result)},
+      {"n_triggers", result.triggers.n_triggers},
+      {"n_triggers_slow_left", result.triggers.n_holding},
+      {"n_left", count([](const SampleOutcome& o) { return o.sample.set == Sample::Set::left_trigger; })},
+      {"n_left_with_fronts", count([](const SampleOutcome& o) {
+         return o.sample.set == Sample::Set::left_trigger && o.left_max > 0;
+       })},
+      {"n_left_others_hold", count([](const SampleOutcome& o) {
+         return o.sample.set == Sample::Set::left_trigger && o.others_hold;
+       })},
+      {"n_left_region", result.left.all.size()},
+      {"n_left_alike", result.left.alike.size()},
+      {"n_right", count([](const SampleOutcome& o) { return o.sample.set == Sample::Set::right_trigger; })},
+      {"n_right_region", result.right.all.size()},
+      {"n_right_alike", result.right.alike.size()},
+      {"evidence", evidence_json(result)},
+      {"region", region_json(result)},
+      {"standard", outcome_json(result, result.outcomes.front())},
+      {"known", outcomes_json(result, Sample::Set::known)},
+      {"finer", outcomes_json(result, Sample::Set::finer)},
+      {"about", outcomes_json(result, Sample::Set::about_chosen)},
+      {"chosen", nullptr}};
+  if (result.chosen()) json["chosen"] = outcome_json(result, result.outcomes[*result.chosen()]);
   files::write_text(dir / "open_choices.csv", csv(result));
   files::write_text(dir / summary_file, json.dump(2) + "\n");
 }

@@ -30,7 +30,7 @@ std::string number(double value, const char* unit = "", double factor = 1) {
 void print_outcome(const kammer2012::OpenChoicesResult& result, const kammer2012::SampleOutcome& o) {
   for (std::size_t k = 0; k < result.choices.size(); ++k) {
     const auto& choice = result.choices[k];
-    if (o.sample.values[k] != choice.standard)
+    if (o.sample.values[k] != choice.standard && is_in_use(result.choices, k, o.sample.values))
       print("  {:<20} {} instead of {}\n", choice.name, choice.text(o.sample.values[k]),
             choice.text(choice.standard));
   }
@@ -43,15 +43,13 @@ void print_outcome(const kammer2012::OpenChoicesResult& result, const kammer2012
 }
 
 void print_table(const kammer2012::OpenChoicesResult& result, const std::string& dir) {
-  const auto& standard = result.outcomes.front();
   print("{} samples of {} choices\n", result.outcomes.size(), result.choices.size());
   print_ends(result.counts);
-  print("standard choices\n");
-  print_outcome(result, standard);
   print("C1 to C11 hold for {} of {} triggers\n", result.triggers.n_holding, result.triggers.n_triggers);
-  if (result.chosen >= 0) {
-    print("least extreme of the {} samples of the region:\n", result.region.size());
-    print_outcome(result, result.outcomes[result.chosen]);
+  print("region: {} left triggers, {} right ones\n", result.left.all.size(), result.right.all.size());
+  if (result.chosen()) {
+    print("chosen, in its middle:\n");
+    print_outcome(result, result.outcomes[*result.chosen()]);
   }
   for (const auto& e : kammer2012::evidence(result)) {
     print("{}: {} samples", e.name, e.n);

@@ -145,7 +145,8 @@ std::vector<std::pair<input::Case, input::Case>> pairs_of(const Variation& varia
   const auto events = paper_cases(quick);
   for (std::size_t k = 0; k < events.size(); ++k) {
     list.emplace_back(variation.events[k].config, events[k].config);
-    list.back().second.output.snapshot_times_s.clear();
+    auto& own = list.back().second;
+    if (own.event != interface::EventKind::left) own.output.snapshot_times_s.clear();
   }
   const auto all = studies(quick);
   for (const auto& study : variation.studies) {

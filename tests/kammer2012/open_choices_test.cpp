@@ -31,12 +31,6 @@ std::size_t place_of(const std::vector<OpenChoice>& choices, std::string_view na
   return static_cast<std::size_t>(std::ranges::find(choices, name, &OpenChoice::name) - choices.begin());
 }
 
-std::size_t n_changed(const std::vector<OpenChoice>& choices, const Sample& sample) {
-  std::size_t n = 0;
-  for (std::size_t k = 0; k < choices.size(); ++k) n += sample.values[k] != choices[k].standard ? 1 : 0;
-  return n;
-}
-
 TEST(OpenChoices, RangesHoldTheStandardAndGoBackAndForth) {
   for (const auto& choice : open_choices()) {
     SCOPED_TRACE(choice.name);
@@ -46,7 +40,7 @@ TEST(OpenChoices, RangesHoldTheStandardAndGoBackAndForth) {
     EXPECT_LE(choice.share_of(choice.standard), 1);
     EXPECT_EQ(choice.at(0), choice.levels.front());
     EXPECT_NEAR(choice.share_of(choice.at(1)), 1, 1e-12);
-    if (choice.between != OpenChoice::Between::nothing) {
+    if (choice.is_continuous) {
       EXPECT_NEAR(choice.share_of(choice.at(0.3)), 0.3, 1e-12);
     } else {
       EXPECT_THAT(choice.levels, Contains(choice.standard));
@@ -75,113 +69,171 @@ TEST(OpenChoices, SetTheKeysThatTheyName) {
   }
 }
 
-TEST(OpenChoices, SamplesAreWhatTheirSetSays) {
+TEST(OpenChoices, TriggersVaryAtOneEdgeAndRampsEndWithinTheirDuration) {
   const auto choices = open_choices();
-  std::map<Sample::Set, std::size_t> n;
-  std::set<std::vector<double>> different;
-  for (const auto& sample : samples(choices, false)) {
-    ++n[sample.set];
-    different.insert(sample.values);
-    ASSERT_EQ(sample.values.size(), choices.size());
-    const auto changed = n_changed(choices, sample);
-    if (sample.set == Sample::Set::one_at_a_time) {
-      EXPECT_THAT(changed, testing::AnyOf(1U, 2U));
-    }
-    if (sample.set == Sample::Set::standard || sample.set == Sample::Set::pairs) {
-      EXPECT_EQ(changed, sample.set == Sample::Set::pairs ? 2U : 0U);
-    }
-    if (sample.set == Sample::Set::left_trigger) {
-      const auto value = [&](const char* name) { return sample.values[place_of(choices, name)]; };
-      EXPECT_NE(choices.front().text(value("left_form")), "weakened");
-      EXPECT_GE(value("left_zone_m"), 10e-3);
-      EXPECT_GE(value("left_added"), 5);
-      EXPECT_GE(value("left_raised"), 2);
-    }
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-      const auto& choice = choices[k];
-      const double value = sample.values[k];
-      if ((sample.set == Sample::Set::left_trigger && choice.event != interface::EventKind::left) ||
-          (sample.set == Sample::Set::triggers && !choice.event)) {
-        EXPECT_EQ(value, choice.standard) << choice.name;
+  for (const auto edge : {interface::EventKind::left, interface::EventKind::right}) {
+    const auto list = trigger_samples(choices, edge, {0, 512}, standard_values(choices));
+    std::set<std::vector<double>> different;
+    std::array<int, 2> n_ends{};
+    for (const auto& sample : list) {
+      different.insert(sample.values);
+      for (std::size_t k = 0; k < choices.size(); ++k) {
+        if (choices[k].event != edge) {
+          EXPECT_EQ(sample.values[k], choices[k].standard) << choices[k].name;
+          continue;
+        }
+        EXPECT_GE(sample.values[k], choices[k].levels.front()) << choices[k].name;
+        EXPECT_LE(sample.values[k], choices[k].levels.back()) << choices[k].name;
+        EXPECT_EQ(fmt::format("{:.2g}", sample.values[k]), fmt::format("{:.6g}", sample.values[k]));
       }
-      EXPECT_GE(value, choice.levels.front()) << choice.name;
-      EXPECT_LE(value, choice.levels.back()) << choice.name;
+      const std::string name = edge == interface::EventKind::left ? "left" : "right";
+      const auto value = [&](const char* choice) { return sample.values[place_of(choices, name + choice)]; };
+      const bool is_held = value("_end") == 1;
+      ++n_ends[is_held];
+      if (!is_held && value("_form") != 2) {  // a weakened zone has neither
+        EXPECT_LE(value("_ramp_s"), value("_duration_s"));
+      }
     }
+    EXPECT_EQ(different.size(), list.size());
+    EXPECT_EQ(n_ends[0], n_ends[1]);
+    const auto behind = trigger_samples(choices, edge, {500, 12}, standard_values(choices));
+    for (std::size_t k = 0; k < behind.size(); ++k) EXPECT_EQ(behind[k].values, list[500 + k].values);
   }
-  EXPECT_EQ(n[Sample::Set::standard], 1U);
-  EXPECT_EQ(n[Sample::Set::triggers], 512U);
-  EXPECT_EQ(n[Sample::Set::all], 256U);
-  EXPECT_EQ(n[Sample::Set::left_trigger], 256U);
-  EXPECT_EQ(different.size(), samples(choices, false).size());
 }
 
 TEST(OpenChoices, SpaceFillingReachesEveryTenthOfEveryRange) {
   const auto choices = open_choices();
+  const auto list = samples_of_all(choices, 256);
+  ASSERT_EQ(list.size(), 256U);
   for (std::size_t k = 0; k < choices.size(); ++k) {
-    if (choices[k].between == OpenChoice::Between::nothing) continue;
+    if (!choices[k].is_continuous || !choices[k].at_most.empty()) continue;
     std::array<int, 10> n{};
-    for (const auto& sample : samples(choices, false))
-      if (sample.set == Sample::Set::all)
-        ++n[std::min(9, static_cast<int>(10 * choices[k].share_of(sample.values[k])))];
-    EXPECT_THAT(n, Each(testing::AllOf(testing::Ge(23), testing::Le(28)))) << choices[k].name;  // of 256
+    for (const auto& sample : list)
+      ++n[std::min(9, static_cast<int>(10 * choices[k].share_of(sample.values[k])))];
+    EXPECT_THAT(n, Each(testing::AllOf(testing::Ge(23), testing::Le(28)))) << choices[k].name;
   }
 }
 
-TEST(OpenChoices, TheRegionAgreesWithFig6WhereThereIsSuchASample) {
-  std::vector<SampleOutcome> outcomes(5);
-  EXPECT_THAT(region_of(outcomes), testing::IsEmpty());
-  EXPECT_EQ(min_extreme(outcomes), -1);
-  outcomes[0].agrees_with_fig6 = true;  // though another claim fails
-  for (const std::size_t k : {1, 2, 3, 4}) outcomes[k].is_constrained = true;
-  for (const std::size_t k : {1, 2, 3, 4}) outcomes[k].extremity = k == 2 ? 0.2 : 0.3;
-  EXPECT_THAT(region_of(outcomes), testing::ElementsAre(1, 2, 3, 4));
-  EXPECT_EQ(min_extreme(outcomes), 2);
-  outcomes[3].agrees_with_fig6 = outcomes[4].agrees_with_fig6 = true;
-  EXPECT_THAT(region_of(outcomes), testing::ElementsAre(3, 4));
-  EXPECT_EQ(min_extreme(outcomes), 3);  // the first of two
+TEST(OpenChoices, AChoiceCountsWhereAllThatDecideItDo) {
+  const auto choices = open_choices();
+  auto values = standard_values(choices);
+  const auto set = [&](const char* name, double value) { values[place_of(choices, name)] = value; };
+  const auto used = [&](const char* name) { return is_in_use(choices, place_of(choices, name), values); };
+  EXPECT_TRUE(used("left_added") && used("left_ramp_s") && used("left_end"));
+  EXPECT_FALSE(used("left_raised") || used("left_duration_s"));  // it is held
+  set("left_end", 0);
+  EXPECT_TRUE(used("left_duration_s"));
+  set("left_form", 2);  // weakened
+  EXPECT_FALSE(used("left_added") || used("left_ramp_s") || used("left_end") || used("left_duration_s"));
+  EXPECT_TRUE(used("left_zone_m"));
 }
 
-TEST(OpenChoices, EvidenceIsOfTheSamplesWhoseConstrainingClaimsHold) {
+/// Outcomes of left triggers, for which the constraining claims hold.
+class Region : public testing::Test {
+ protected:
+  SampleOutcome& add(double form, double end, double zone_m, double duration_s = 5e-6) {
+    auto& o = outcomes.emplace_back();
+    o.sample = {Sample::Set::left_trigger, standard_values(choices)};
+    o.sample.values[place_of(choices, "left_form")] = form;
+    o.sample.values[place_of(choices, "left_end")] = end;
+    o.sample.values[place_of(choices, "left_zone_m")] = zone_m;
+    o.sample.values[place_of(choices, "left_duration_s")] = duration_s;
+    o.others_hold = true;
+    o.circle = Circle{.n_snapshots = 10, .n_apart = 8};
+    return o;
+  }
+  TriggerRegion region() const { return region_of(choices, outcomes, interface::EventKind::left); }
+
+  std::vector<OpenChoice> choices = open_choices();
+  std::vector<SampleOutcome> outcomes;
+};
+
+TEST_F(Region, HasTheTriggersForWhichAllConstrainingClaimsHold) {
+  EXPECT_FALSE(region().nearest_to_middle);
+  add(0, 0, 5e-3).circle->n_apart = 7;
+  add(0, 0, 5e-3).circle.reset();
+  add(0, 0, 5e-3).others_hold = false;
+  add(0, 0, 5e-3).sample.set = Sample::Set::right_trigger;
+  EXPECT_THAT(region().all, testing::IsEmpty());
+  add(0, 0, 5e-3);
+  EXPECT_THAT(region().all, testing::ElementsAre(4));
+  EXPECT_EQ(region().nearest_to_middle, 4U);
+}
+
+TEST_F(Region, IsChosenInTheMiddleOfItsMostFrequentFormAndEnd) {
+  add(1, 0, 2e-3);  // raised
+  for (const double zone_m : {4e-3, 2e-3, 16e-3, 2e-3, 20e-3}) add(0, 0, zone_m);
+  add(0, 1, 4e-3), add(0, 1, 4e-3, 15e-6);  // held, whatever their duration
+  EXPECT_THAT(region().all, testing::SizeIs(8));
+  EXPECT_THAT(region().alike, testing::ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_EQ(region().nearest_to_middle, 1U);  // 4 mm is the median
+  // Durations count by their logarithms: 0.5, 1, 1, 4 and 15 us, median 1.
+  const auto duration = place_of(choices, "left_duration_s");
+  const std::array durations_s = {15e-6, 1e-6, 4e-6, 0.5e-6, 1e-6};
+  for (std::size_t k = 0; k < 5; ++k) outcomes[k + 1].sample.values[duration] = durations_s[k];
+  EXPECT_EQ(region().nearest_to_middle,
+            2U);  // 2 mm and 1 us: log 2 / log 10 off; 4 mm and 15 us: log 15 / log 30
+}
+
+TEST_F(Region, IsChosenAtTheRightAmongTriggersLikeTheLeftOne) {
+  const auto add_right = [&](double right_form, double right_end) {
+    auto& o = add(1, 0, 5e-3);  // raised at the left, and taken away
+    o.sample.set = Sample::Set::right_trigger;
+    o.sample.values[place_of(choices, "right_form")] = right_form;
+    o.sample.values[place_of(choices, "right_end")] = right_end;
+  };
+  add_right(0, 0), add_right(0, 0), add_right(1, 1), add_right(2, 0), add_right(1, 0);
+  const auto right = region_of(choices, outcomes, interface::EventKind::right);
+  EXPECT_THAT(right.all, testing::SizeIs(5));
+  EXPECT_THAT(right.alike, testing::ElementsAre(4));
+  EXPECT_EQ(right.nearest_to_middle, 4U);
+}
+
+TEST_F(Region, EvidenceIsOfItAndOfHeldTriggersWithoutTheCircle) {
   OpenChoicesResult result;
-  result.choices = open_choices();
+  result.choices = choices;
   result.claims = {"C14", "C21"};
-  const auto duration = place_of(result.choices, "left_duration_s");
-  const auto add = [&](bool is_constrained, bool agrees, bool is_held, double spread) {
-    auto& o = result.outcomes.emplace_back();
-    o.sample.values = standard_values(result.choices);
-    if (!is_held) o.sample.values[duration] = 15e-6;
-    o.is_constrained = is_constrained;
-    o.agrees_with_fig6 = agrees;
+  const auto give = [](SampleOutcome& o, double spread) {
     o.spread_at_energy_rise = spread;
     o.distance = spread < 0.05 ? 1 : 1.5;
-    o.difference_of_kinds = std::numeric_limits<double>::quiet_NaN();
+    o.difference_of_kinds = nan;
     o.holds = {spread < 0.1, std::nullopt};
   };
-  add(false, true, true, 0.9);
-  add(true, true, true, 0.04);
-  add(true, true, false, 0.06);
-  add(true, true, false, 0.12);
-  add(true, false, true, 0.2);
+  give(add(0, 0, 5e-3), 0.04);
+  give(add(0, 0, 6e-3), 0.06);
+  give(add(1, 0, 5e-3), 0.12);
+  for (const double form : {0.0, 2.0}) {  // a weakened zone has no end
+    auto& held = add(form, 1, 5e-3);
+    held.circle->n_apart = 0;
+    give(held, 0.2);
+  }
+  auto& brief = add(0, 0, 5e-3);
+  brief.circle->n_apart = 0;
+  give(brief, 0.9);
+  result.outcomes = outcomes;
   const auto groups = evidence(result);
-  ASSERT_EQ(groups.size(), 4U);
-  for (const auto& [k, n] : {std::pair{0, 3}, {1, 4}, {2, 1}, {3, 2}}) EXPECT_EQ(groups[k].n, n) << k;
-  const auto& agreeing = groups[0];
-  EXPECT_EQ(agreeing.n_paper_fit_in_intervals, 1);
-  EXPECT_EQ(agreeing.spread_at_energy_rise.least, 0.04);
-  EXPECT_EQ(agreeing.spread_at_energy_rise.median, 0.06);
-  EXPECT_EQ(agreeing.spread_at_energy_rise.largest, 0.12);
-  EXPECT_TRUE(std::isnan(agreeing.difference_of_kinds.median));
-  ASSERT_EQ(agreeing.shares.size(), 1U);  // C21 was not tested
-  EXPECT_EQ(agreeing.shares[0].claim, "C14");
-  EXPECT_EQ(agreeing.shares[0].n_tested, 3);
-  EXPECT_EQ(agreeing.shares[0].n_holding, 2);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(groups[0].n, 3U);
+  EXPECT_EQ(groups[1].n, 1U);
+  EXPECT_EQ(groups[1].spread_at_energy_rise.median, 0.2);
+  const auto& region = groups[0];
+  EXPECT_EQ(region.n_paper_fit_in_intervals, 1U);
+  EXPECT_EQ(region.spread_at_energy_rise.least, 0.04);
+  EXPECT_EQ(region.spread_at_energy_rise.median, 0.06);
+  EXPECT_EQ(region.spread_at_energy_rise.largest, 0.12);
+  EXPECT_TRUE(std::isnan(region.difference_of_kinds.median));
+  ASSERT_EQ(region.shares.size(), 1U);  // C21 was not tested
+  EXPECT_EQ(region.shares[0].claim, "C14");
+  EXPECT_EQ(region.shares[0].n_tested, 3U);
+  EXPECT_EQ(region.shares[0].n_holding, 2U);
 }
 
 TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) {
   const auto go_on = [](std::size_t, std::size_t) { return true; };
   const auto once = study_open_choices({.quick = true, .threads = 1, .kept = {}}, go_on);
   const auto again = study_open_choices({.quick = true, .threads = 2, .kept = {}}, go_on);
-  ASSERT_EQ(once.outcomes.size() + once.n_impossible, 13U);
+  // The default, four triggers at each edge, four of all choices; more where triggers were chosen.
+  ASSERT_GE(once.outcomes.size() + once.n_impossible, 13U);
   EXPECT_EQ(once.counts.n_runs, again.counts.n_runs);
   EXPECT_EQ(once.triggers.n_triggers, 4);
   EXPECT_EQ(once.triggers.n_holding, again.triggers.n_holding);
@@ -193,13 +245,8 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
 
   const auto& standard = once.outcomes.front();
   EXPECT_EQ(standard.sample.set, Sample::Set::standard);
-  EXPECT_EQ(standard.extremity, 0);
-  EXPECT_EQ(once.chosen >= 0, !once.region.empty());
-  for (const auto place : once.region) {
-    EXPECT_TRUE(once.outcomes[place].is_constrained);
-    if (once.outcomes[place].sample.set == Sample::Set::about_chosen) continue;
-    EXPECT_GE(once.outcomes[place].extremity, once.outcomes[static_cast<std::size_t>(once.chosen)].extremity);
-  }
+  EXPECT_EQ(once.chosen().has_value(), !once.left.all.empty());
+  for (const auto place : once.left.all) EXPECT_TRUE(once.outcomes[place].is_constrained());
   const auto json = nlohmann::json::parse(test::read_file(a / "open_choices.json"));
   EXPECT_EQ(json["n_runs"], once.counts.n_runs);
   EXPECT_EQ(json["choices"].size(), once.choices.size());
@@ -244,11 +291,10 @@ TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
   }
 }
 
-TEST(OpenChoices, SamplesAboutAnotherChangeOneChoiceOrAnAmountWithItsForm) {
+TEST(OpenChoices, SamplesAboutAnotherChangeOneChoiceOrOneWithTheWordThatLetsItCount) {
   const auto choices = open_choices();
-  auto values = standard_values(choices);
-  values[0] = 2;  // weakened at the left
-  const auto list = samples_about(choices, Sample::Set::about_chosen, values);
+  const auto values = standard_values(choices);  // held: durations come with an end
+  const auto list = samples_about(choices, values);
   std::set<std::size_t> changed_choices;
   for (const auto& sample : list) {
     std::vector<std::size_t> changed;
@@ -257,11 +303,26 @@ TEST(OpenChoices, SamplesAboutAnotherChangeOneChoiceOrAnAmountWithItsForm) {
     ASSERT_FALSE(changed.empty());
     ASSERT_LE(changed.size(), 2U);
     if (changed.size() == 2) {
-      EXPECT_THAT(choices[changed.front()].name, testing::EndsWith("_form"));
+      EXPECT_THAT(choices[changed.front()].name,
+                  testing::AnyOf(testing::EndsWith("_form"), testing::EndsWith("_end")));
     }
     changed_choices.insert(changed.back());
   }
   EXPECT_EQ(changed_choices.size(), choices.size());
+}
+
+TEST(OpenChoices, SamplesAboutABriefTriggerHaveNoRampBeyondItsEnd) {
+  const auto choices = open_choices();
+  auto values = standard_values(choices);
+  values[place_of(choices, "left_end")] = 0;
+  values[place_of(choices, "left_duration_s")] = 2e-6;
+  values[place_of(choices, "left_ramp_s")] = 1e-6;
+  for (const auto& sample : samples_about(choices, values))
+    if (sample.values[place_of(choices, "left_end")] == 0 &&
+        sample.values[place_of(choices, "left_form")] != 2) {
+      EXPECT_LE(sample.values[place_of(choices, "left_ramp_s")],
+                sample.values[place_of(choices, "left_duration_s")]);
+    }
 }
 
 TEST(OpenChoices, CanBeInterrupted) {

@@ -32,7 +32,7 @@ Claim claim_of(const Reproduction& runs, const std::string& id) {
 
 std::set<std::string> paper_claims() {
   std::set<std::string> ids;
-  for (int k = 1; k <= 24; ++k) ids.insert(fmt::format("C{}", k));
+  for (int k = 1; k <= 25; ++k) ids.insert(fmt::format("C{}", k));
   return ids;
 }
 
@@ -270,6 +270,19 @@ const Variant variants[] = {
          p.v_tip_m_per_s = std::min(p.v_tip_m_per_s, 0.99 * r.left.speeds.c_S);
      }},
     {"C24", "global friction near the local one", [](auto& r) { r.loaded_on[1].largest_friction = 1.2; }},
+    {"C25", "slip as fast as the wave behind it",
+     [](auto& r) {
+       for (auto& wave : r.left.waves) wave.lowest_behind_m_per_s = 0.6 * wave.peak_m_per_s;
+     }},
+    {"C25", "slower than longitudinal waves",
+     [](auto& r) {
+       for (auto& wave : r.left.waves) wave.distance_m *= 0.8;
+     }},
+    {"C25", "on one ray alone",
+     [](auto& r) {
+       for (auto& wave : r.left.waves)
+         if (wave.angle_deg == 45) wave = {.time_s = wave.time_s, .angle_deg = 45};
+     }},
 };
 
 TEST(Scorecard, ClaimsDoNotHoldForOtherRuns) {

@@ -62,8 +62,8 @@ TEST(SecondTests, OneRowCountsForEachClaim) {
     std::vector<int> numbers;
     for (const auto& claim : claims)
       if (claim.counts && claim.id[0] == 'C') numbers.push_back(std::stoi(claim.id.substr(1)));
-    ASSERT_EQ(numbers.size(), 24U);
-    for (int k = 0; k < 23; ++k) EXPECT_EQ(numbers[k], k + 1);
+    ASSERT_EQ(numbers.size(), 25U);
+    for (int k = 0; k < 25; ++k) EXPECT_EQ(numbers[k], k + 1);
   };
   expect_counting({"C1", "C11", "C18b", "C19b", "C20b", "C21+", "C22b", "E1"},
                   {"C11b", "C12+", "C18", "C18+", "C18c", "C19", "C20", "C20+", "C21", "C22", "C22b1+"});
@@ -77,22 +77,22 @@ TEST(SecondTests, SummaryCountsWithAndWithoutThem) {
   using testing::AllOf, testing::HasSubstr;
   auto runs = make_good();
   EXPECT_THAT(summary(scorecard(runs)),
-              AllOf(HasSubstr("22 hold, 0 do not, 0 not tested, 2 used to choose"),
-                    HasSubstr("first tests alone 23 hold, 0 do not, 0 not tested, 1 used")));
+              AllOf(HasSubstr("23 hold, 0 do not, 0 not tested, 2 used to choose"),
+                    HasSubstr("first tests alone 23 hold, 0 do not, 0 not tested, 2 used")));
   runs.studies[0] = make_mu_k_study({0.9, 0.6, 0.7, 0.3, 0.2});  // C20 alone falls
   runs.studies.pop_back();                                       // of C22
   runs.triggers = {{10, 0}};                                     // C11b alone falls
   EXPECT_THAT(summary(scorecard(runs)),
-              AllOf(HasSubstr("21 hold, 1 do not, 1 not tested, 1 used to choose"),
-                    HasSubstr("first tests alone 21 hold, 1 do not, 1 not tested, 1 used")));
+              AllOf(HasSubstr("22 hold, 1 do not, 1 not tested, 1 used to choose"),
+                    HasSubstr("first tests alone 21 hold, 1 do not, 1 not tested, 2 used")));
 }
 
 TEST(SecondTests, WhatWasUsedToChooseConfirmsNothing) {
   auto runs = make_good();
   runs.triggers = {{10, 1}};
   auto claims = scorecard(runs);
-  for (const char* id : {"C11", "C18b"}) EXPECT_EQ(verdict(row(claims, id)), "used to choose") << id;
-  for (const char* id : {"C11b", "C18c", "C10"}) EXPECT_EQ(verdict(row(claims, id)), "holds") << id;
+  for (const char* id : {"C11", "C25"}) EXPECT_EQ(verdict(row(claims, id)), "used to choose") << id;
+  for (const char* id : {"C11b", "C18b", "C18c", "C10"}) EXPECT_EQ(verdict(row(claims, id)), "holds") << id;
   runs.left.fronts = runs.right.fronts;  // as fast as the right-triggered ones
   claims = scorecard(runs);
   EXPECT_EQ(verdict(row(claims, "C11")), "does not hold");

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interface/friction/velocity_weakening.hpp"
+#include "papers/kammer2012/circle.hpp"
 #include "papers/kammer2012/scorecard.hpp"
 
 // Events made by formula instead of by computation: the speed, the static and dynamic stress ratio and the
@@ -130,6 +131,9 @@ inline Outcome make_spontaneous(const Profile& against = linear(0.8, 1.5),
 inline Outcome make_left(const Profile& v) {
   Outcome o = make_event("left", EventKind::left);
   o.fronts = {make_front(contact_from_m, 0.194, v, o.speeds.c_L)};
+  for (const double time_s : wave_times_s(o))
+    for (const double angle_deg : {30.0, 45.0})
+      o.waves.push_back({time_s, angle_deg, 0.95 * o.speeds.c_L * time_s, 2, 0.5});
   return o;
 }
 

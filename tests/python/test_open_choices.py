@@ -49,19 +49,21 @@ def test_a_damaged_study_is_refused(study, capsys, name):
     assert not (study / "figures").exists()
 
 
-@pytest.mark.parametrize(
-    "is_chosen, colours", [(True, ("TURNS_OFF", "HOLDS")), (False, ("TURNS_ON", "FAILS"))]
-)
-def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample_or_the_standard(study, is_chosen, colours):
-    if not is_chosen:
-        change_json(study / "open_choices.json", lambda s: s.update(chosen=None))
+def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample(study):
     figure = open_choices.draw(study).figure
-    cells = dict(zip(("C11:left_added", "C11:left_zone_m"), colours, strict=True))
-    for gid, colour in ({"C2:left_form": "TURNS_OFF", "C2:left_zone_m": "HOLDS"} | cells).items():
+    colours = {"C11:left_added": "TURNS_ON", "C11:left_zone_m": "FAILS"}
+    for gid, colour in ({"C2:left_form": "TURNS_OFF", "C2:left_zone_m": "HOLDS"} | colours).items():
         cell = artist(figure, gid)
         assert to_hex(cell.get_facecolor()) == getattr(open_choices, colour) and not cell.get_hatch()
     assert artist(figure, "C2:corner").get_hatch()  # was not varied
-    assert is_chosen == any(line.get_gid() == "chosen" for line in figure.axes[1].lines)
+    assert any(line.get_gid() == "chosen" for line in figure.axes[1].lines)
+
+
+def test_nothing_is_varied_about_a_sample_that_was_not_chosen(study):
+    change_json(study / "open_choices.json", lambda s: s.update(chosen=None))
+    figure = open_choices.draw(study).figure
+    assert artist(figure, "C2:left_form").get_hatch()
+    assert not any(line.get_gid() == "chosen" for line in figure.axes[1].lines)
 
 
 def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
@@ -69,14 +71,14 @@ def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
     points = {line.get_gid(): line.get_xydata() for line in figure.axes[1].lines if line.get_gid()}
     expected = {
         "standard": [[0.9, 66]],
-        "one at a time": [[0, 84], [0.75, 70]],
-        "triggers": np.empty((0, 2)),
+        "known": np.empty((0, 2)),
         "left trigger": np.empty((0, 2)),
-        "pairs": np.empty((0, 2)),
+        "right trigger": np.empty((0, 2)),
         "all": [[1.6, 31], [np.nan, 35]],
-        "about the chosen": [[0, 83], [0.9, 66]],
-        "hold": [[0.5, 75], [0.55, 76]],
-        "region": [[0.45, 80]],
+        "about the chosen": [[0, 83], [0.9, 66], [0.55, 60]],
+        "finer": np.empty((0, 2)),
+        "hold": [[0.6, 82], [0.55, 76], [0.5, 70]],
+        "region": [[0.5, 75], [0.45, 80], [0.45, 80], [0.5, 70], [0.55, 70]],
         "chosen": [[0.5, 75]],
     }
     assert points.keys() == expected.keys()
@@ -84,19 +86,14 @@ def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
         np.testing.assert_allclose(points[name], xy, err_msg=name)
 
 
-def test_left_triggers_that_add_a_traction_are_points_of_their_zone_and_amount(study):
-    file = study / "open_choices.csv"
-    text = file.read_text()
-    file.write_text(text.replace("triggers,added,0.012346,10,relief,weakened,0.01,hold,does not",
-                                 "triggers,added,0.012346,10,relief,weakened,0.01,hold,holds"))  # fmt: skip
-    assert file.read_text() != text
+def test_left_triggers_that_add_a_traction_are_points_of_their_duration_and_impulse(study):
     lines = open_choices.draw(study).figure.axes[2].lines
     points = {line.get_gid(): line.get_xydata() for line in lines}
     expected = {
-        "left:fail": [[10, 5]],  # the standard; of the other sets more than the triggers varies
-        "left:hold": np.empty((0, 2)),
-        "left:region": [[12.346, 10]],
-        "left:chosen": [[10, 10]],
+        "left:fail": np.empty((0, 2)),  # of other sets more than the left trigger varies
+        "left:hold": [[open_choices.HELD_US, 200], [5, 123.46]],
+        "left:region": [[5, 100]],
+        "left:chosen": [[5, 100]],
     }
     assert points.keys() == expected.keys()
     for name, xy in expected.items():

@@ -18,7 +18,7 @@ from synthetic_study import write_open_choices
 
 SCRIPTS = ROOT / "scripts"
 OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
-TEXTS = 3 * ("stale", "kept")  # within and behind a pair of marks
+TEXTS = 5 * ("stale", "kept")  # within and behind a pair of marks
 
 
 @dataclass
@@ -48,7 +48,7 @@ class Pages:
 
 def open_choices(folder: Path) -> Pages:
     results, page = write_open_choices(folder / "results"), folder / "page.md"
-    tables = ("choices", "outcomes", "evidence")
+    tables = ("choices", "outcomes", "evidence", "known", "meshes")
     marks = [mark for table in tables for mark in (f"<!-- {table} -->", f"<!-- end of {table} -->")]
     return Pages("open-choices-page.py", results, "open_choices.json", page, page, marks)
 
@@ -106,9 +106,14 @@ def test_the_tables_of_the_open_choices(tmp_path):
     lines = pages.page.read_text().split("\n")
     assert "| `left_added` | `event.left_added` | 5, 10 | open | 5 | 9 to 10 | 10 |" in lines
     assert "| `corner` | `event.corner` | relief, fillet 10 mm | open | relief | - | relief |" in lines
-    fit = "0.80 [0.70, 0.90] | 2.00 [1.90, 2.10] | 3.00 [2.90, 3.10] | 75 %"
-    assert f"| standard | {fit} | do not all hold, Fig. 6 does not agree |" in lines
-    assert f"| chosen | {fit} | hold, Fig. 6 does not agree |" in lines
+    fit = "0.80 [0.70, 0.90] | 2.00 [1.90, 2.10] | 3.00 [2.90, 3.10]"
+    row = f"does not | none | 1.20; 60, 40 % | 0.060, 75 % | {fit} | 12, 15, 18 % |"
+    assert f"| added: 10 mm, 20, held | 156 | {row}" in lines
+    assert f"| **chosen**, added: 10 mm, 10, 5 us | 156 | {row}".replace("does not | none", "holds | 2.4; 0.6") in lines
+    sizes = [line.split(" | ")[0] for line in lines if " mm | " in line and line.startswith(("| 0.5", "| 1", "| 2"))]
+    assert sizes == ["| 0.5 mm", "| 1 mm", "| 2 mm"]
+    assert next(line for line in lines if line.startswith("| 2 mm")).endswith("| C11, C25 |")
+    assert "| points in the paper's band | 80 % (70 to 90) | - |" in lines
     assert "| spread of V_tip at equal t_d/p_d | 4 % (2 to 5) | - |" in lines
     assert "| C18c holds | 1 of 2 | - |" in lines
     assert "| difference between kinds of slip (C21+) | 0.20 c_L (0.10 to 0.30) | - |" in lines

@@ -25,7 +25,7 @@ TABLE = "open_choices.csv"
 SUMMARY = "open_choices.json"
 #: Shares of samples for which a claim holds, and their headings.
 SHARES = {
-    "share_of_triggers": "% of triggers",
+    "share_of_triggers": "% of left triggers",
     "share_of_triggers_with_fronts": "% of those with fronts",
     "share_of_all": "% of all choices",
 }
@@ -40,11 +40,11 @@ SAMPLES_MM, REST_MM = 62.0, 78.0  # the samples; headings, legends and labels
 #: Marker, colour and name of the sets of samples, those with the fewest on top.
 SETS = {
     "all": ("x", "0.6", "all choices, space-filling"),
-    "triggers": (".", "#d55e00", "triggers, space-filling"),
-    "left trigger": ("1", "#e69f00", "strong left triggers, space-filling"),
-    "pairs": ("+", "#117733", "pairs"),
-    "one at a time": ("v", "#882255", "one choice at a time"),
-    "about the chosen": ("^", "#44aa99", "one at a time about the chosen"),
+    "left trigger": (".", "#d55e00", "left triggers, space-filling"),
+    "right trigger": ("1", "#e69f00", "right triggers, space-filling"),
+    "about the chosen": ("^", "#44aa99", "one choice at a time about the chosen"),
+    "known": ("v", "#882255", "left triggers compared in the page"),
+    "finer": ("+", "#117733", "the chosen, elements of 0.5 and 0.333 mm"),
 }
 HOLDING: Look = {
     "marker": "o",
@@ -52,13 +52,12 @@ HOLDING: Look = {
     "markersize": 3.5,
     "markerfacecolor": "none",
     "markeredgewidth": 0.8,
-    "label": "constraining claims hold",
+    "label": "all constraining claims but C25 hold",
 }
-REGION: Look = {"marker": "o", "color": "#0072b2", "markersize": 3.5, "label": "Fig. 6 agrees, too"}
-AMOUNT_TICKS = (2, 5, 10, 20, 40)
-#: Sets whose left triggers are drawn: in the others more than the triggers varies.
-SETS_OF_TRIGGERS = ("standard", "pairs", "triggers", "left trigger")
-STANDARD: Look = {"marker": "*", "color": "black", "markersize": 7.0, "label": "the study's standard"}
+REGION: Look = {"marker": "o", "color": "#0072b2", "markersize": 3.5, "label": "C25 holds, too: the region"}
+DURATION_TICKS = {0.5: "0.5", 1: "1", 2: "2", 5: "5", 15: "15", 30: "held"}  # us
+HELD_US = 30.0  # where held triggers are drawn
+STANDARD: Look = {"marker": "*", "color": "black", "markersize": 7.0, "label": "this program's default"}
 CHOSEN: Look = {
     "marker": "D",
     "color": "black",
@@ -66,12 +65,6 @@ CHOSEN: Look = {
     "markerfacecolor": "none",
     "markeredgewidth": 1.0,
 }
-
-
-def about(row: dict[str, Any], summary: dict[str, Any]) -> dict[str, Any]:
-    """Verdict and turns of a claim about the chosen sample; about the standard where none was chosen."""
-    found: dict[str, Any] = row["about_chosen"] if summary["chosen"] else row
-    return found
 
 
 def turned_levels(turns: list[dict[str, Any]], choice: str) -> list[Any]:
@@ -118,11 +111,11 @@ def title(choice: str) -> str:
 
 
 def varied_choices(table: Table, summary: dict[str, Any]) -> set[str]:
-    """The choices that some sample changes by themselves, about the same sample as `about`."""
-    chosen = summary["chosen"]
-    centre = chosen_row(table, chosen) if chosen else 0
-    wanted = "about the chosen" if chosen else "one at a time"
-    rows = [row for row, name in enumerate(table.texts("set")) if name == wanted]
+    """The choices that some sample changes by themselves, about the chosen one."""
+    if not summary["chosen"]:
+        return set()
+    centre = chosen_row(table, summary["chosen"])
+    rows = [row for row, name in enumerate(table.texts("set")) if name == "about the chosen"]
     columns = {name: table.texts(name) for name in table.header}
     return {name for name, texts in columns.items() if any(texts[row] != texts[centre] for row in rows)}
 
@@ -134,7 +127,7 @@ def cell_look(holds: bool, turns: bool) -> dict[str, Any]:
 
 def texts_of(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:
     """A claim's cells, by choice: the levels at which its verdict turns."""
-    turns = about(row, summary)["turns"]
+    turns = row["turns"]
     names = [choice["name"] for choice in summary["choices"]]
     return [cell_text([label(level, name) for level in turned_levels(turns, name)]) for name in names]
 
@@ -153,7 +146,7 @@ def draw_matrix(ax: Axes, summary: dict[str, Any], varied: set[str]) -> None:
     for y, row in enumerate(rows):
         for x, (choice, text) in enumerate(zip(choices, texts_of(row, summary), strict=True)):
             name = choice["name"]
-            look = cell_look(about(row, summary)["holds"], bool(text)) if name in varied else NOT_VARIED
+            look = cell_look(row["holds"], bool(text)) if name in varied else NOT_VARIED
             ax.add_patch(
                 Rectangle((x, edges[y]), 1, edges[y + 1] - edges[y], gid=f"{row['id']}:{name}", **look)
             )
@@ -183,10 +176,14 @@ def draw_matrix(ax: Axes, summary: dict[str, Any], varied: set[str]) -> None:
 
 
 def trigger(values: dict[str, Any], edge: str) -> str:
-    """How an edge is triggered, such as "left added 10 over 15 mm"."""
+    """How an edge is triggered, such as "left added 10 over 15 mm for 5 µs"."""
     form = values[f"{edge}_form"]
-    amount = f" {values[f'{edge}_{form}']:.3g}" if f"{edge}_{form}" in values else ""
-    return f"{edge} {form}{amount} over {1e3 * values[f'{edge}_zone_m']:.3g} mm"
+    place = f"over {1e3 * values[f'{edge}_zone_m']:.3g} mm"
+    if f"{edge}_{form}" not in values:
+        return f"{edge} {form} {place}"
+    is_held = values[f"{edge}_end"] == "held"
+    end = "held" if is_held else f"for {1e6 * values[f'{edge}_duration_s']:.3g} µs"
+    return f"{edge} {form} {values[f'{edge}_{form}']:.3g} {place} {end}"
 
 
 def as_number(text: str) -> float | None:
@@ -212,9 +209,9 @@ def chosen_row(table: Table, chosen: dict[str, Any]) -> int:
 
 
 def kept(table: Table) -> tuple[np.ndarray, np.ndarray]:
-    """Rows whose constraining claims hold, and those that agree with Fig. 6 as well."""
-    hold = np.array(table.texts("constraints")) == "hold"
-    return hold, hold & (np.array(table.texts("fig6")) == "holds")
+    """Rows whose constraining claims but C25 hold, and those for which C25 holds as well."""
+    hold, region = (np.array(table.texts(f"constraints{name}")) == "hold" for name in ("_but_C25", ""))
+    return hold, region
 
 
 def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D]:
@@ -246,7 +243,7 @@ def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D
     limit: Look = {"color": "0.3", "linewidth": 0.6}
     ax.axvline(LARGEST_RATIO, **limit)
     ax.axhline(wanted, **limit)
-    words = f"what the paper says: at most {LARGEST_RATIO:g}, at least {wanted:.0f} %"
+    words = f"C11: at most {LARGEST_RATIO:g}; C18b, not used to choose: at least {wanted:.0f} %"
     handles.insert(0, Line2D([], [], label=words, **limit))
     largest = np.max(ratio[np.isfinite(ratio)], initial=0.0)
     beyond = int(np.sum(ratio > HIGHEST_RATIO))
@@ -261,23 +258,26 @@ def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D
 
 
 def draw_left_triggers(ax: Axes, table: Table, summary: dict[str, Any]) -> None:
-    """Zone and amount of the left triggers that add a traction."""
+    """Zone times amount over the duration, of the left triggers that add a traction."""
     hold, region = kept(table)
     is_added = np.array(table.texts("left_form")) == "added"
-    shown = np.isin(np.array(table.texts("set")), SETS_OF_TRIGGERS) & is_added
-    zone, amount = 1e3 * table.numbers("left_zone_m"), table.numbers("left_added")
+    shown = is_added & np.isin(np.array(table.texts("set")), ("left trigger", "known"))
+    impulse = 1e3 * table.numbers("left_zone_m") * table.numbers("left_added")
+    is_held = np.array(table.texts("left_end")) == "held"
+    duration = np.where(is_held, HELD_US, 1e6 * table.numbers("left_duration_s"))
     looks: list[tuple[str, np.ndarray, Look]] = [
         ("fail", ~hold, {"marker": ".", "color": "0.6", "markersize": 2.5}),
         ("hold", hold & ~region, HOLDING),
         ("region", region, REGION),
     ]
     for name, rows, look in looks:
-        ax.plot(zone[shown & rows], amount[shown & rows], linestyle="none", gid=f"left:{name}", **look)
+        ax.plot(duration[shown & rows], impulse[shown & rows], linestyle="none", gid=f"left:{name}", **look)
     if chosen := summary["chosen"]:
         row = chosen_row(table, chosen)
-        ax.plot(zone[row], amount[row], linestyle="none", gid="left:chosen", **CHOSEN)
-    ax.set(xlabel="zone of the left trigger (mm)", ylabel="amount that it adds", yscale="log")
-    ax.set_yticks(AMOUNT_TICKS, labels=[f"{amount:g}" for amount in AMOUNT_TICKS])
+        ax.plot(duration[row], impulse[row], linestyle="none", gid="left:chosen", **CHOSEN)
+    ax.set(xlabel="duration of the left trigger (µs)", ylabel="its zone times the amount that it adds (mm)",
+           xscale="log", yscale="log")  # fmt: skip
+    ax.set_xticks(list(DURATION_TICKS), labels=list(DURATION_TICKS.values()))
     ax.minorticks_off()
 
 

@@ -20,12 +20,18 @@ from slipfront.files import is_number
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #111; background: #fff; }
-body { max-width: 64em; margin: 2em auto; padding: 0 1em; }
+body { max-width: 84em; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.6em; } h2 { font-size: 1.25em; margin-top: 2.2em; }
 figure { margin: 2em 0; } figure img { max-width: 100%; display: block; }
 figcaption { font-size: 0.9em; color: #333; margin-top: 0.5em; max-width: 52em; }
 .column img { width: 34em; } .text img { width: 44em; } .page img { width: 100%; }
-.statements { margin-top: 0.6em; }
+@media (min-width: 70em) {
+  .beside { display: grid; grid-template-columns: 3fr 2fr; column-gap: 2em; } .beside img { width: 100%; }
+  .statements { grid-column: 2; grid-row: 1 / 3; }
+}
+.claims td { white-space: nowrap; } .claims td:nth-child(2) { white-space: normal; min-width: 20em; }
+.claims summary { max-width: 38em; overflow: hidden; text-overflow: ellipsis; cursor: pointer; }
+.claims [open] summary, .claims p { white-space: normal; max-width: 48em; margin: 0.3em 0; }
 table { border-collapse: collapse; font-size: 0.87em; }
 th, td { text-align: left; vertical-align: top; padding: 0.3em 0.7em; }
 thead { border-bottom: 1px solid #111; } tbody tr { border-bottom: 1px solid #ddd; }
@@ -83,38 +89,54 @@ def verdict_of(entry: dict[str, Any]) -> tuple[str, str, str]:
 
 
 def scorecard_table(scorecard: list[dict[str, Any]]) -> str:
-    variations = [key for key in VARIATIONS if any(key in entry for entry in scorecard)]
-    judges = {entry["second_test_of"]: entry["id"] for entry in scorecard if is_counted_second_test(entry)}
+    """A line for each claim, with the verdict that counts; behind it, folded away, its tests."""
     rows = []
-    for entry in scorecard:
-        sign, kind, meaning = verdict_of(entry)
-        judge = judges.get(entry["id"])
-        counted = f'<br><span class="note">{escape(judge)} counts</span>' if judge else ""
-        verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}{counted}</td>'
+    for counted in (entry for entry in scorecard if entry.get("counts", True) and not is_further_test(entry)):
+        others = [e for e in scorecard if claim_of(e) == claim_of(counted) and e is not counted]
         rows.append(
             [
-                *(text(entry[key]) for key in ("id", "claim", "paper", "measured")),
-                verdict,
-                *(text((entry.get(key) or {}).get("moves") or None) for key in variations),
-                text(entry["how"]) + second_test_note(entry),
+                *(text(counted[key]) for key in ("id", "claim", "paper")),
+                verdict_cell(counted),
+                f"<details><summary>{text(counted['measured'])}</summary>{tested(counted)}"
+                + "".join(
+                    f"<p>{sign_of(e)} {text(e['id'])}: {text(e['measured'])}</p>{tested(e)}" for e in others
+                )
+                + "</details>",
             ]
         )
-    added = [VARIATIONS[key] for key in variations]
     return variation_note(scorecard) + table(
-        ["", "Claim", "Paper", "Measured", "Holds", *added, "How tested"], rows
+        ["", "Claim", "Paper", "", "Measured; how tested"], rows, kind="claims"
     )
+
+
+def claim_of(entry: dict[str, Any]) -> str:
+    """The claim that a row tests: C18 of C18, C18+, C18b and C18c."""
+    found = re.match(r"[A-Z]\d+", entry["id"])
+    return found[0] if found else entry["id"]
+
+
+def is_further_test(entry: dict[str, Any]) -> bool:
+    return entry["id"].endswith("+") and "second_test_of" not in entry
+
+
+def sign_of(entry: dict[str, Any]) -> str:
+    sign, kind, meaning = verdict_of(entry)
+    return f'<span class="{kind}" title="{meaning}">{sign}</span>'
+
+
+def tested(entry: dict[str, Any]) -> str:
+    """How a row was tested, why instead of its claim's first test, and how far its numbers move."""
+    parts = [f"Test: {text(entry['how'])}."]
+    if "second_test_of" in entry:
+        parts.append(f"Instead of {escape(entry['second_test_of'])}: {escape(entry.get('why', ''))}.")
+    for key, words in VARIATIONS.items():
+        if moves := (entry.get(key) or {}).get("moves"):
+            parts.append(f"{words} {text(moves)}.")
+    return f'<p class="note">{" ".join(parts)}</p>'
 
 
 def is_counted_second_test(entry: dict[str, Any]) -> bool:
     return "second_test_of" in entry and entry.get("counts", False)
-
-
-def second_test_note(entry: dict[str, Any]) -> str:
-    """Of a second test, why the first one misjudges its claim."""
-    if "second_test_of" not in entry:
-        return ""
-    why = f"Instead of {entry['second_test_of']}: {entry.get('why', '')}"
-    return f'<br><span class="note">{escape(why)}</span>'
 
 
 def variation_note(scorecard: list[dict[str, Any]]) -> str:
@@ -337,11 +359,12 @@ def figure_html(drawing: Drawing, results: Results, png: bytes, pdf: str = "") -
         f'<span class="mark">{escape(drawing.mark.replace(chr(10), "; "))}.</span> ' if drawing.mark else ""
     )
     link = f' <a href="{escape(pdf)}">PDF</a>' if pdf else ""
+    statements = statements_table(drawing, results)
     return (
-        f'<figure id="{title}" class="{figure_kind(drawing)}">'
+        f'<figure id="{title}" class="{figure_kind(drawing)}{" beside" if statements else ""}">'
         f'<img alt="{title}" src="data:image/png;base64,{image}">\n'
-        f"<figcaption>{mark}{label}{drawing.caption}{link}"
-        f"{statements_table(drawing, results)}</figcaption></figure>"
+        f"<figcaption>{mark}{label}{drawing.caption}{link}</figcaption>"
+        f"{statements}</figure>"
     )
 
 
@@ -371,7 +394,7 @@ def timing_section(results: Results) -> list[str]:
 
 
 def navigation(results: Results) -> str:
-    parts = [("scorecard", "Scorecard"), ("figures", "Figures"), ("fit", "Fit")]
+    parts = [("figures", "Figures"), ("scorecard", "Scorecard"), ("fit", "Fit")]
     parts += [("studies-table", "Studies")] if results.studies else []
     parts += [("fronts", "Fronts")]
     parts += [("timings", "Timings")] if results.timings else []
@@ -391,11 +414,11 @@ def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Pat
         f"frictional interfaces</i>, Tribology Letters 48, 27–32 (2012). Runs by {origin(results)}.</p>",
         *(f'<p class="mark">{escape(line)}</p>' for line in results.remarks),
         navigation(results),
+        '<h2 id="figures">Figures</h2>',
+        *(figure_with_files(drawing, results, folder) for drawing in drawings),
         '<h2 id="scorecard">Scorecard</h2>',
         f"<p>{scorecard_summary(results.scorecard)}</p>",
         scorecard_table(results.scorecard),
-        '<h2 id="figures">Figures</h2>',
-        *(figure_with_files(drawing, results, folder) for drawing in drawings),
         '<h2 id="fit">Fit of the energy criterion</h2>',
         "<p>V<sub>tip</sub>/c<sub>L</sub> = a + b exp(−c √r), r = (U<sub>r</sub> − "
         "U<sub>s</sub>)/U<sub>s</sub></p>",

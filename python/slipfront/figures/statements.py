@@ -26,6 +26,7 @@ STATEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
         ("One ratio goes with several speeds.", "C12"),
         ("The left-triggered event stays well below the largest speed of the two others.", "C11"),
         ("In (a) the tip, faster than shear waves, runs behind the longitudinal wave.", "C23"),
+        ("That wave is a white circle, the outermost zone of (a).", "C25"),
     ),
     "fig4_dynamic_ratio": (
         (

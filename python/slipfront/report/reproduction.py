@@ -35,6 +35,7 @@ SYMBOLS = {
     "spontaneous_mu_k_1.0": "diamond",
 }
 PLACES = [
+    ("figures", "Figures"),
     ("scorecard", "Scorecard"),
     ("criteria", "Criteria"),
     ("runs", "Runs"),
@@ -42,7 +43,6 @@ PLACES = [
     ("profiles", "t/p at a time"),
     ("energy", "Energy"),
     ("snapshots", "Snapshots"),
-    ("figures", "Figures"),
     ("fit", "Fit"),
     ("fronts", "Fronts"),
 ]
@@ -147,10 +147,10 @@ def page(folder: Path, _file: Path) -> Page:
             f"<p>Runs by {tables.origin(results)}.</p>",
             warnings_list(results.remarks, "mark"),
             single.navigation(PLACES),
+            section("figures", "Figures", *figures(results)),
             scorecard,
             single.criteria_section(panels, more="Fronts of all four runs; a click on a name hides them."),
             *runs_parts(results),
-            section("figures", "Figures", *figures(results)),
             section(
                 "fit", "Fit of the energy criterion", tables.fit_table(results), tables.spread_table(results)
             ),

@@ -91,12 +91,9 @@ def open_choices_verdicts(summary: dict[str, Any]) -> str:
     """For each claim, the share of samples for which it holds, and at which levels its verdict turns."""
     rows = []
     for row in summary["matrix"]:
-        about = open_choices.about(row, summary)
-        turns = ", ".join(f"{t['choice']} = {t['level']}" for t in about["turns"])
+        turns = ", ".join(f"{t['choice']} = {t['level']}" for t in row["turns"])
         shares = [f"{formatted(row[key], '.0f', PERCENT)}" for key in open_choices.SHARES]
-        rows.append(
-            [words(row["id"]), "holds" if about["holds"] else "does not", words(turns or "–"), *shares]
-        )
+        rows.append([words(row["id"]), "holds" if row["holds"] else "does not", words(turns or "–"), *shares])
     return table(["Claim", "Holds", "Turns at", *open_choices.SHARES.values()], rows)
 
 
