@@ -232,8 +232,8 @@ docs: sensitivity convergence  ## renew the pages and figures of docs/ that the 
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) $(PAPER)/scorecard.md
 	$(PYTHON) scripts/energy-criterion.py $(RESULTS) $(PAPER)/energy-criterion.md $(PAPER)/figures/energy_criterion.png
-	$(PYTHON) scripts/paper-fracture.py $(PAPER)/fracture.md $(PAPER)/figures/fracture.png
-	$(PYTHON) scripts/paper-sequences.py $(PAPER)/sequences.md $(PAPER)/figures/sequences.png
+	PYTHONPATH=python $(PYTHON) scripts/paper-fracture.py $(PAPER)/fracture.md $(PAPER)/figures/fracture.png
+	PYTHONPATH=python $(PYTHON) scripts/paper-sequences.py $(PAPER)/sequences.md $(PAPER)/figures/sequences.png
 	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(PAPER)/figures/
 	cp $(RESULTS)/figures/energy_balance.png docs/figures/
 

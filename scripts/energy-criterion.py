@@ -251,7 +251,7 @@ def write(results: Path, page: Path, picture: Path) -> None:
         others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
         lefts = {
             f"amount {amount}": first_front(
-                results / "studies/trigger_amount" / amount / "left", "event.trigger_amount", float(amount)
+                results / "studies/left_amount" / amount / "left", "event.trigger_amount", float(amount)
             )
             for amount in AMOUNTS
         }

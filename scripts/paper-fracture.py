@@ -61,6 +61,12 @@ def main_front(event: str, size_m: float, case: Path, folder: Path) -> MainFront
     )
 
 
+def median(values: np.ndarray) -> str:
+    """A dash where nothing is known."""
+    known = values[np.isfinite(values)]
+    return f"{np.median(known):.2g}" if len(known) else "-"
+
+
 def table(fronts: list[MainFront]) -> str:
     text = (
         "| event | h | Gamma (J/m2) | X_c/h | median speed/c_S | below c_S | median G_static/Gamma "
@@ -72,7 +78,7 @@ def table(fronts: list[MainFront]) -> str:
         text += (
             f"| {EVENTS[f.event]} | {1e3 * f.size_m:.2f} mm | {np.nanmedian(f.work_J_per_m2):.3f} "
             f"| {np.nanmedian(f.zone_m) / f.size_m:.2g} | {np.median(known):.2f} | {np.mean(known < 1):.0%} "
-            f"| {np.nanmedian(f.G_over_Gamma):.2g} | {correlation(f.speed, f.rise)} "
+            f"| {median(f.G_over_Gamma)} | {correlation(f.speed, f.rise)} "
             f"| {correlation(f.speed, f.drop)} | {correlation(f.speed, f.G_over_Gamma)} |\n"
         )
     return text

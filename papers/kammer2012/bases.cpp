@@ -182,6 +182,9 @@ std::vector<NamedCase> cases_on(const BaseOption& base, bool quick) {
     c.title = fmt::format("{} on {}", name, base.name);
     c.output.snapshot_times_s.clear();
     c.output.history_interval_s = c.output.energy_interval_s = 1e-5;
+    // Held ones: the brief left one of the plate on the plane tears it off a base of PMMA.
+    c.trigger = {};
+    if (c.event == interface::EventKind::left) c.trigger.zone_m = 20e-3, c.trigger.amount = 20;
     if (!base.material) continue;
     c.base.kind = input::BaseKind::body;
     c.base.material = *base.material;

@@ -152,7 +152,7 @@ def write_open_choices(folder: Path) -> Path:
     }
     chosen = standard | {"left_added": 10.0, "left_end": "taken away"}
     samples = [
-        # set, values, constraints, those but C25, maxima of the left, spontaneous and right front, share in the band
+        # set, values, constraints, those but C25, largest left, spontaneous, right speed, share in the band
         ("standard", standard, "do not", "do not", 1.8, 2.0, 3.0, 0.66),
         ("known", standard | {"left_added": 20.0}, "do not", "hold", 1.2, 2.0, 3.0, 0.82),
         ("left trigger", chosen, "hold", "hold", 1.0, 2.0, 3.0, 0.75),

@@ -109,8 +109,15 @@ def test_the_tables_of_the_open_choices(tmp_path):
     fit = "0.80 [0.70, 0.90] | 2.00 [1.90, 2.10] | 3.00 [2.90, 3.10]"
     row = f"does not | none | 1.20; 60, 40 % | 0.060, 75 % | {fit} | 12, 15, 18 % |"
     assert f"| added: 10 mm, 20, held | 156 | {row}" in lines
-    assert f"| **chosen**, added: 10 mm, 10, 5 us | 156 | {row}".replace("does not | none", "holds | 2.4; 0.6") in lines
-    sizes = [line.split(" | ")[0] for line in lines if " mm | " in line and line.startswith(("| 0.5", "| 1", "| 2"))]
+    assert (
+        f"| **chosen**, added: 10 mm, 10, 5 us | 156 | {row}".replace("does not | none", "holds | 2.4; 0.6")
+        in lines
+    )
+    sizes = [
+        line.split(" | ")[0]
+        for line in lines
+        if " mm | " in line and line.startswith(("| 0.5", "| 1", "| 2"))
+    ]
     assert sizes == ["| 0.5 mm", "| 1 mm", "| 2 mm"]
     assert next(line for line in lines if line.startswith("| 2 mm")).endswith("| C11, C25 |")
     assert "| points in the paper's band | 80 % (70 to 90) | - |" in lines

@@ -237,13 +237,13 @@ def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D
     draw_rows(region, "region", **REGION)
     draw_rows([0], "standard", **STANDARD)
     if chosen := summary["chosen"]:
-        words = ", ".join(trigger(chosen["values"], edge) for edge in ("left", "right"))
+        words = ",\n".join(trigger(chosen["values"], edge) for edge in ("left", "right"))
         draw_rows([chosen_row(table, chosen)], "chosen", **CHOSEN, label=f"chosen: {words}")
     wanted = 100 * summary["wanted_share_in_band"]
     limit: Look = {"color": "0.3", "linewidth": 0.6}
     ax.axvline(LARGEST_RATIO, **limit)
     ax.axhline(wanted, **limit)
-    words = f"C11: at most {LARGEST_RATIO:g}; C18b, not used to choose: at least {wanted:.0f} %"
+    words = f"limits: {LARGEST_RATIO:g} of C11; {wanted:.0f} % of C18b, not used"
     handles.insert(0, Line2D([], [], label=words, **limit))
     largest = np.max(ratio[np.isfinite(ratio)], initial=0.0)
     beyond = int(np.sum(ratio > HIGHEST_RATIO))
