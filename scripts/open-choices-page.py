@@ -167,7 +167,7 @@ def outcomes(study: dict[str, Any]) -> str:
         f"hold for {n['left_others_hold']}, all of them for {n['left_region']}, the region, of which "
         f"{n['left_alike']} have the most frequent form and end. Of the {n['right']} right triggers the "
         f"constraints hold for {n['right_region']}, {n['right_alike']} of them of the left one's form and "
-        f"end. C1 to C11 hold for {n['triggers_slow_left']} of the first {n['triggers']} left triggers (C11b)."
+        f"end. C1 to C11 hold for {n['triggers_slow_left']} of the first {n['triggers']} left ones (C11b)."
     )
     return textwrap.fill(counts, PAGE_WIDTH, break_on_hyphens=False) + "\n"
 
