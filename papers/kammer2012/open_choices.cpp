@@ -219,7 +219,7 @@ std::vector<Sample> space_filling(const std::vector<OpenChoice>& sampled,
   constexpr double range = 1 + static_cast<double>(boost::random::sobol::max());
   std::vector<Sample> list;
   for (std::size_t point = 0; point < points.n; ++point) {
-    Sample& sample = list.emplace_back(set, others);
+    Sample& sample = list.emplace_back(Sample{set, others});
     for (std::size_t k = 0; k < sampled.size(); ++k) {
       if (!varied(sampled[k])) continue;
       OpenChoice choice = sampled[k];
@@ -269,7 +269,7 @@ std::vector<Sample> known_samples(const std::vector<OpenChoice>& choices) {
                             {10e-3, 40, 4e-6},
                             {10e-3, 20, 5e-6},
                             {20e-3, 10, 5e-6}}) {
-    auto& values = list.emplace_back(Sample::Set::known, standard_values(choices)).values;
+    auto& values = list.emplace_back(Sample{Sample::Set::known, standard_values(choices)}).values;
     values[index_of(choices, "left_zone_m")] = known.zone_m;
     values[index_of(choices, "left_added")] = known.added;
     values[index_of(choices, "left_ramp_s")] = 0.1e-6;
@@ -514,7 +514,7 @@ class OpenChoicesStudy {
     auto lefts = sampled(EventKind::left, standard);
     const auto rights = sampled(EventKind::right, chosen_of(lefts, EventKind::left, standard));
     const auto with_right = chosen_of(rights, EventKind::right, standard);
-    const auto add = [&](std::vector<Sample> list, bool with_every_circle) {
+    const auto add = [&](const std::vector<Sample>& list, bool with_every_circle) {
       std::ranges::move(judged(list, with_every_circle), std::back_inserter(result_.outcomes));
     };
     add(with_trigger(EventKind::right, with_right, {{Sample::Set::standard, standard}}), true);
