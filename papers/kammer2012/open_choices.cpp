@@ -424,6 +424,11 @@ bool has_slow_left(const SampleOutcome& o, const std::vector<std::string>& ids) 
   return true;
 }
 
+/// The samples of triggers at an edge.
+Sample::Set set_of(EventKind edge) {
+  return edge == EventKind::left ? Sample::Set::left_trigger : Sample::Set::right_trigger;
+}
+
 bool is_of_region(const SampleOutcome& o) {
   return o.sample.set == Sample::Set::left_trigger && o.is_constrained();
 }
@@ -511,7 +516,7 @@ class OpenChoicesStudy {
 
   OpenChoicesResult run() {
     const auto standard = standard_values(result_.choices);
-    auto lefts = sampled(EventKind::left, standard);
+    const auto lefts = sampled(EventKind::left, standard);
     const auto rights = sampled(EventKind::right, chosen_of(lefts, EventKind::left, standard));
     const auto with_right = chosen_of(rights, EventKind::right, standard);
     const auto add = [&](const std::vector<Sample>& list, bool with_every_circle) {
@@ -698,8 +703,7 @@ std::vector<OpenChoice> open_choices(bool quick) {
 std::vector<Sample> trigger_samples(const std::vector<OpenChoice>& choices, EventKind edge,
                                     SobolPoints points, const std::vector<double>& others) {
   const auto varied = [edge](const OpenChoice& choice) { return choice.event == edge; };
-  const auto set = edge == EventKind::left ? Sample::Set::left_trigger : Sample::Set::right_trigger;
-  auto list = space_filling(choices, varied, set, points, others);
+  auto list = space_filling(choices, varied, set_of(edge), points, others);
   for (auto& sample : list)
     for (std::size_t k = 0; k < choices.size(); ++k)
       if (varied(choices[k])) sample.values[k] = two_digits(sample.values[k]);
@@ -734,9 +738,9 @@ std::vector<Sample> samples_about(const std::vector<OpenChoice>& choices, const 
 TriggerRegion region_of(const std::vector<OpenChoice>& choices, const std::vector<SampleOutcome>& outcomes,
                         EventKind edge) {
   TriggerRegion region;
-  const auto set = edge == EventKind::left ? Sample::Set::left_trigger : Sample::Set::right_trigger;
   for (std::size_t place = 0; place < outcomes.size(); ++place)
-    if (outcomes[place].sample.set == set && outcomes[place].is_constrained()) region.all.push_back(place);
+    if (outcomes[place].sample.set == set_of(edge) && outcomes[place].is_constrained())
+      region.all.push_back(place);
   const auto words = [&](std::size_t place, EventKind of) {
     return words_of(choices, outcomes[place].sample.values, of);
   };
@@ -746,13 +750,13 @@ TriggerRegion region_of(const std::vector<OpenChoice>& choices, const std::vecto
                          [&](std::size_t place) { return words(place, edge) == wanted; });
     return alike;
   };
-  for (const auto first : region.all) {
-    if (edge == EventKind::right) {
-      region.alike = with_words(words(first, EventKind::left));
-      break;
-    }
-    if (auto alike = with_words(words(first, edge)); alike.size() > region.alike.size())
-      region.alike = std::move(alike);
+  if (region.all.empty()) return region;
+  if (edge == EventKind::right) {
+    region.alike = with_words(words(region.all.front(), EventKind::left));
+  } else {
+    for (const auto first : region.all)
+      if (auto alike = with_words(words(first, edge)); alike.size() > region.alike.size())
+        region.alike = std::move(alike);
   }
   if (region.alike.empty()) return region;
   std::vector<double> distances(region.alike.size(), 0);

@@ -109,8 +109,8 @@ std::size_t changed_choice(const Sample& sample, const Sample& standard) {
   return changed;
 }
 
-/// Of each claim: its verdict with the chosen triggers, how often it holds, and at which levels of which
-/// choice, taken by itself, it turns.
+/// For each claim: its verdict with the chosen triggers, how often it holds, and the levels of single choices
+/// at which the verdict changes.
 Json matrix_json(const OpenChoicesResult& result) {
   Json list = Json::array();
   const auto& centre = result.outcomes[result.chosen().value_or(0)];
