@@ -84,14 +84,14 @@ std::vector<double> wave_times_s(const Outcome& left) {
   std::vector<double> times_s;
   const auto* front = main_front(left, 1);
   if (front == nullptr) return times_s;
-  double begin_s = infinity, end_s = -infinity;  // of the tip between the places
+  double entry_s = infinity, exit_s = -infinity;  // of the tip between the places
   for (const auto& p : front->points) {
     if (p.x_m < tip_from_m || p.x_m > tip_to_m) continue;
-    begin_s = std::min(begin_s, p.onset_s);
-    end_s = std::max(end_s, p.onset_s);
+    entry_s = std::min(entry_s, p.onset_s);
+    exit_s = std::max(exit_s, p.onset_s);
   }
-  for (int k = 1; k * wave_interval_s <= end_s; ++k)
-    if (k * wave_interval_s >= begin_s) times_s.push_back(k * wave_interval_s);
+  for (int k = 1; k * wave_interval_s <= exit_s; ++k)
+    if (k * wave_interval_s >= entry_s) times_s.push_back(k * wave_interval_s);
   return times_s;
 }
 
