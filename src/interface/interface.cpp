@@ -47,50 +47,40 @@ struct SomeLanes {
   }
 };
 
-template <ContactAlgorithm algorithm, bool remembers, std::size_t n_law_states, class Place>
-auto read_nodes(const Interface& s, Place at) {
-  Node<SimdVector, n_law_states> n{};
-  n.initial_gap_m = at.read(s.initial_gap_m);
-  n.mass_per_length_kg_m2 = at.read(s.mass_per_length_kg_m2);
-  n.tangential_mass_ratio = at.read(s.tangential_mass_ratio);
-  n.intact = at.read(s.intact);
-  n.is_forced = s.is_forced;
-  n.v_x_m_per_s = at.read(s.v_x_m_per_s);
-  n.v_y_m_per_s = at.read(s.v_y_m_per_s);
-  n.u_y_m = at.read(s.u_y_m);
-  n.slip_rate_m_per_s = at.read(s.slip_rate_m_per_s);
-  n.slipping = at.read(s.slipping);
-  n.slip_m = at.read(s.slip_m);
-  if constexpr (remembers) n.memory = {at.read(s.relaxed_Pa), at.read(s.target_Pa)};
-  if constexpr (algorithm == ContactAlgorithm::predictor_corrector) {
-    n.acceleration_m_per_s2 = at.read(s.acceleration_m_per_s2);
-    n.locked = at.read(s.locked);
-  }
-  for (std::size_t k = 0; k < n_law_states; ++k) n.law_states[k] = at.read(s.law_states[k]);
-  return n;
-}
+/// Whether a value goes into a node's update, and whether it comes out of it.
+template <bool in, bool out>
+struct Flow {};
 
-template <ContactAlgorithm algorithm, bool remembers, std::size_t n_law_states, class Place>
-void write_nodes(const Node<SimdVector, n_law_states>& n, Interface& s, Place at) {
-  at.write(s.v_x_m_per_s, n.v_x_m_per_s);
-  at.write(s.v_y_m_per_s, n.v_y_m_per_s);
-  at.write(s.slip_rate_m_per_s, n.slip_rate_m_per_s);
-  at.write(s.t_Pa, n.t_Pa);
-  at.write(s.p_Pa, n.p_Pa);
-  at.write(s.onset_ratio, n.onset_ratio);
-  at.write(s.strength_Pa, n.strength_Pa);
-  at.write(s.slipping, n.slipping);
-  at.write(s.slip_m, n.slip_m);
+/// Calls visit(flow, array, value) for all that a node of an update shares with the interface's arrays.
+template <ContactAlgorithm algorithm, bool remembers, class NodeOfLanes, class Visit>
+void for_each_value(Interface& s, NodeOfLanes& n, Visit&& visit) {
+  constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
+  constexpr Flow<true, false> in;
+  constexpr Flow<false, true> out;
+  constexpr Flow<true, true> both;
+  visit(in, s.initial_gap_m, n.initial_gap_m);
+  visit(in, s.mass_per_length_kg_m2, n.mass_per_length_kg_m2);
+  visit(in, s.tangential_mass_ratio, n.tangential_mass_ratio);
+  visit(in, s.intact, n.intact);
+  visit(both, s.v_x_m_per_s, n.v_x_m_per_s);
+  visit(both, s.v_y_m_per_s, n.v_y_m_per_s);
+  visit(Flow<true, predicts>{}, s.u_y_m, n.u_y_m);
+  visit(both, s.slip_rate_m_per_s, n.slip_rate_m_per_s);
+  visit(out, s.t_Pa, n.t_Pa);
+  visit(out, s.p_Pa, n.p_Pa);
+  visit(out, s.onset_ratio, n.onset_ratio);
+  visit(out, s.strength_Pa, n.strength_Pa);
+  visit(both, s.slipping, n.slipping);
+  visit(both, s.slip_m, n.slip_m);
   if constexpr (remembers) {
-    at.write(s.relaxed_Pa, n.memory.relaxed_Pa);
-    at.write(s.target_Pa, n.memory.target_Pa);
+    visit(both, s.relaxed_Pa, n.memory.relaxed_Pa);
+    visit(both, s.target_Pa, n.memory.target_Pa);
   }
-  if constexpr (algorithm == ContactAlgorithm::predictor_corrector) {
-    at.write(s.u_y_m, n.u_y_m);
-    at.write(s.acceleration_m_per_s2, n.acceleration_m_per_s2);
-    at.write(s.locked, n.locked);
+  if constexpr (predicts) {
+    visit(both, s.acceleration_m_per_s2, n.acceleration_m_per_s2);
+    visit(both, s.locked, n.locked);
   }
-  for (std::size_t k = 0; k < n_law_states; ++k) at.write(s.law_states[k], n.law_states[k]);
+  for (std::size_t k = 0; k < n.law_states.size(); ++k) visit(both, s.law_states[k], n.law_states[k]);
 }
 
 /// A law of the registry, the same for all nodes or one for each.
@@ -156,14 +146,21 @@ struct LawOverArrays {
 // 14 aligns those on the stack to 32 bytes, where vectors may need 64.
 template <ContactAlgorithm algorithm, class Law, class Form>
 [[gnu::flatten, gnu::noinline]] bool update(const Law& given, const Form form, double dt_s, Interface& s) {
-  constexpr bool remembers = Form::remembers;
   Law law = given;
   SimdMask changed{};
   const auto update_at = [&](auto at) {
-    auto nodes = read_nodes<algorithm, remembers, Law::n_states>(s, at);
+    Node<SimdVector, Law::n_states> nodes{};
+    nodes.is_forced = s.is_forced;
+    for_each_value<algorithm, Form::remembers>(
+        s, nodes, [&]<bool in, bool out>(Flow<in, out>, const auto& array, auto& value) {
+          if constexpr (in) value = at.read(array);
+        });
     law.go_to(at.begin);
     changed |= update_node<algorithm, Law::memory, Law::strengthens>(law.constants, form, dt_s, nodes);
-    write_nodes<algorithm, remembers>(nodes, s, at);
+    for_each_value<algorithm, Form::remembers>(
+        s, nodes, [&]<bool in, bool out>(Flow<in, out>, auto& array, const auto& value) {
+          if constexpr (out) at.write(array, value);
+        });
   };
   std::size_t i = 0;
   for (; i + lanes <= s.size(); i += lanes) update_at(AllLanes{i});

@@ -141,9 +141,8 @@ void Coupling::add_to(StateView& state) {
     if (kind == interface::FieldKind::result || kind == interface::FieldKind::memory)
       arrays.push_back(values);
   });
-  for (const auto* load :
-       {&loads_.intact, &loads_.trigger_force_N_per_m, &loads_.prestress_t_Pa, &loads_.prestress_p_Pa})
-    if (!load->empty()) arrays.push_back(std::as_const(*load));
+  for (const auto* load : Loads::arrays(std::as_const(loads_)))
+    if (!load->empty()) arrays.push_back(*load);
   arrays.push_back(start_u_x_m_);
   for (auto& side : sides_) arrays.insert(arrays.end(), {side.v_x, side.v_y});
   state.lists.push_back(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,18 @@ struct Loads {
   /// States of a law that has some, [states] of [interface nodes]; empty: as the law begins.
   std::vector<std::vector<double>> law_states = {};
   double light_Pa = 0;  ///< pressure up to which a node does not count as in contact, see light_pressure_Pa
+
+  /// The arrays with a value for each interface node, but for law_states.
+  template <class State>
+  static auto arrays(State& l) {
+    return std::array{&l.intact, &l.trigger_force_N_per_m, &l.prestress_t_Pa, &l.prestress_p_Pa,
+                      &l.weakens_at_s};
+  }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(prestress_t_Pa, prestress_p_Pa, trigger_force_N_per_m, trigger, intact, weakens_at_s,
+            weakening_time_s, prestress_rate, law_states, light_Pa);
+  }
 };
 
 /// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface

@@ -21,9 +21,7 @@ solid::Span own_interface_nodes_in(const mesh::Mesh& mesh, solid::Span columns) 
 }
 
 Loads cut(Loads loads, const mesh::Subset& places) {
-  for (auto* values : {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m,
-                       &loads.intact, &loads.weakens_at_s})
-    *values = places.of(*values);
+  for (auto* values : Loads::arrays(loads)) *values = places.of(*values);
   for (auto& values : loads.law_states) values = places.of(values);
   return loads;
 }

@@ -131,18 +131,7 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
 }
 
 motion::Loads from_root(Processes& processes, const std::function<motion::Loads()>& make) {
-  motion::Loads loads;
-  const auto members = [&](auto&& archive) {
-    archive(loads.prestress_t_Pa, loads.prestress_p_Pa, loads.trigger_force_N_per_m, loads.trigger,
-            loads.intact, loads.weakens_at_s, loads.weakening_time_s, loads.prestress_rate, loads.law_states,
-            loads.light_Pa);
-  };
-  auto message = processes.from_root([&](MessageBuffer& to) {
-    loads = make();
-    members(MessageArchive(to));
-  });
-  if (!processes.is_root()) members(MessageArchive::reader(message));
-  return loads;
+  return unpacked<motion::Loads>(processes.from_root([&](MessageBuffer& to) { to.append(packed(make())); }));
 }
 
 void require_same_program(Processes& processes) {
