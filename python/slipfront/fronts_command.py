@@ -21,7 +21,7 @@ from slipfront.onsets import NONE, read_onsets
 COLUMNS = ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s")
 SPEEDS = ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s")  # of the whole front
 TRACTIONS = ("t_s_Pa", "p_s_Pa")
-OPTIONS = (*LENGTHS_AND_TIMES, "never_slipped")  # by their names in Python
+OPTIONS = (*LENGTHS_AND_TIMES, "never_slipped", "place_error_m", "time_error_s")  # by their names in Python
 MARK = "# fronts by slipfront fronts\n"  # by it a file is known that may be replaced
 MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 
@@ -46,6 +46,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--speed-interval", choices=("centred", "approach"), default="centred")
     add("--resolution-s", type=float, help="time between two frames; faster is not resolved")
     add("--end-time-s", type=float, help="end of the record, by default the last onset")
+    add("--place-error-m", type=float, help="standard error of places, by which the line of a speed weighs "
+        "them; by default it favours neither places nor times")  # fmt: skip
+    add("--time-error-s", type=float, help="the same of times; one alone: the other is exact")
     add("--never-slipped", metavar="TIME", type=mark, help="what the file has in place of a time where "
         "slip never begins, or none; by default -1, 999, 1e9 and the like if far from all times")  # fmt: skip
     speeds = parser.add_argument_group("wave speed, for V_tip/c_L: given, or of a material").add_argument
@@ -95,6 +98,8 @@ def find(file: Path, options: argparse.Namespace) -> xr.Dataset:
             end_time_s=options.end_time_s,
             resolution_s=options.resolution_s,
             never_slipped=NONE,
+            place_error_m=options.place_error_m,
+            time_error_s=options.time_error_s,
             settings=FrontSettings(
                 l_star_m=options.l_star_m,
                 speed_interval=options.speed_interval,
@@ -103,7 +108,7 @@ def find(file: Path, options: argparse.Namespace) -> xr.Dataset:
             ),
         )
     except ValueError as error:
-        raise DataError(f"{file}: {error}") from None
+        raise DataError(f"{file}: {in_words(str(error))}") from None
     own = [note for note in found.attrs["notes"] if "without a time" not in note]  # the record says so
     found.attrs["notes"] = record.attrs["notes"] + own
     return found

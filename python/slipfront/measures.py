@@ -161,20 +161,38 @@ def time_step_s(x_m: np.ndarray, onset_s: np.ndarray) -> float:
     return float(digit if is_uniform else digit * np.gcd.reduce(np.round(parts).astype(np.int64)))
 
 
-def fitted_speed(run_m: np.ndarray, onset_s: np.ndarray, step_s: float) -> tuple[float, float, float]:
+def slope_of_line(x: np.ndarray, t: np.ndarray, errors: tuple[float, float] | None) -> float:
+    """Of t over x, both about their means, as Deming's line has it: the sum of (t - slope x)^2 over the
+    variance of this by the standard errors of x and t is least. Without errors each is the same share of its
+    own spread, which makes the slope the geometric mean of t regressed on x and x on t."""
+    xx, tt, xt = float(x @ x), float(t @ t), float(x @ t)
+    if not xt > 0:
+        return NAN
+    of_x, of_t = (xx, tt) if errors is None else (errors[0] ** 2, errors[1] ** 2)
+    more = of_x * tt - of_t * xx
+    root = float(np.hypot(more, 2 * np.sqrt(of_x * of_t) * xt))
+    # The same root twice: neither form subtracts near equals.
+    return (more + root) / (2 * of_x * xt) if more > 0 else 2 * of_t * xt / (root - more)
+
+
+def fitted_speed(
+    run_m: np.ndarray, onset_s: np.ndarray, step_s: float, errors: tuple[float, float] | None
+) -> tuple[float, float, float]:
     """Speed of the line through onset over distance run, and its interval: what times wrong by up to half
     a step on either side can make of it, or, where that is wider, 95 % by the scatter about the line."""
+    if len(run_m) < 2:
+        return NAN, NAN, NAN
     x, t = run_m - run_m.mean(), onset_s - onset_s.mean()
     weight = x / (x @ x)
-    slope = float(weight @ t)
-    scatter = t - slope * x
+    slope = slope_of_line(x, t, errors)
+    scatter = t - float(weight @ t) * x
     half = float(np.abs(weight).sum()) * step_s / 2
     if (freedom := len(x) - 2) > 0:
         error = float(np.sqrt(scatter @ scatter / freedom / (x @ x)))
         half = max(half, STUDENT_T[min(freedom, len(STUDENT_T)) - 1] * error)
     elif half == 0:  # nothing tells how wrong two times are
         half = float("inf")
-    if slope <= 0:
+    if not slope > 0:
         return NAN, NAN, NAN
     return 1 / slope, 1 / (slope + half), 1 / (slope - half) if slope > half else float("inf")
 
@@ -185,16 +203,31 @@ def slices_of(fronts: xr.Dataset) -> list[slice]:
     return [slice(a, b) for a, b in zip([0, *ends], ends, strict=False)]
 
 
-def add_speeds(fronts: xr.Dataset, step_s: float) -> None:
+def add_speeds(fronts: xr.Dataset, step_s: float, errors: tuple[float, float] | None) -> None:
+    """A place that two fronts share, where they begin or meet, is on neither line: slip began beside it, and
+    at least one of them took another time to it than its speed says."""
     x, onset = fronts["x_m"].to_numpy(), fronts["onset_s"].to_numpy()
-    speeds = [
-        fitted_speed(np.abs(x[part] - x[part.start]), onset[part], step_s) for part in slices_of(fronts)
-    ]
+    _, which, times = np.unique(fronts["node"].to_numpy(), return_inverse=True, return_counts=True)
+    own = times[which] == 1
+    parts = [np.arange(part.start, part.stop)[own[part]] for part in slices_of(fronts)]
+    speeds = [fitted_speed(np.abs(x[at] - x[at[:1]]), onset[at], step_s, errors) for at in parts]
     columns = np.array(speeds, dtype=float).reshape(-1, 3).T
     for name, values in zip(
         ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s"), columns, strict=True
     ):
         fronts[name] = ("front", values, attributes(name))
+
+
+def errors_of(place_m: float | None, time_s: float | None) -> tuple[float, float] | None:
+    if place_m is None and time_s is None:
+        return None
+    made = [
+        0.0 if value is None else number(value, name, least=0, finite=True)
+        for name, value in (("place_error_m", place_m), ("time_error_s", time_s))
+    ]
+    if not any(made):
+        raise CaseError("place_error_m and time_error_s are both 0: give one of them above it, or neither")
+    return made[0], made[1]
 
 
 def notes_of_record(onset_s: np.ndarray, fronts: xr.Dataset, settings: FrontSettings) -> list[str]:
@@ -232,6 +265,8 @@ def find_fronts(
     end_time_s: float | None = None,
     resolution_s: float | None = None,
     never_slipped: float | str | None = None,
+    place_error_m: float | None = None,
+    time_error_s: float | None = None,
     settings: FrontSettings | None = None,
 ) -> xr.Dataset:
     """Fronts in the times at which slip begins along an interface.
@@ -247,13 +282,15 @@ def find_fronts(
     never_slipped: the number in onset_s that marks a place that never slips; "none" if every number is a
     time. Without it -1, -99 and the like are such marks where all others are at least 0, and so are 999, 1e9
     farther from the others than these are from each other; a UserWarning says so.
+    place_error_m, time_error_s: standard errors of x_m and onset_s, by which the line of each front's speed
+    weighs them; one alone: the other is exact. Without them the line favours neither.
     settings: None in it are: l_star_m the median spacing; min_length_m twice that; arrest_time_s 5 times
     what a front takes, at the median speed between neighbours, for min_length_m or the largest spacing
     (at most 5 median ones) where that is longer.
 
     Returns a Dataset over `point` (front_id, x_m, onset_s, v_tip_m_per_s, ...) and `front`: direction, mode,
     end (arrest, meets_front, contact_end, record_edge, record_end), speed_m_per_s of the line through its
-    onsets with speed_low_m_per_s and speed_high_m_per_s. Attributes: the settings used; `notes`, how many
+    own onsets with speed_low_m_per_s and speed_high_m_per_s. Attributes: the settings used; `notes`, how many
     places never slip and how many onsets are in no front, and why."""
     x, onset = array(x_m, "x_m", finite=True), array(onset_s, "onset_s")
     t_s = np.full_like(x, np.nan) if t_s_Pa is None else array(t_s_Pa, "t_s_Pa")
@@ -270,6 +307,7 @@ def find_fronts(
     last = float(slips.max()) if slips.size else 0.0
     end = last if end_time_s is None else number(end_time_s, "end_time_s", least=last)
     resolution = 0.0 if resolution_s is None else number(resolution_s, "resolution_s", least=0)
+    errors = errors_of(place_error_m, time_error_s)
     given = checked(settings)
     given.options()  # refuses what is wrong before it is used
     fits = len(x) == len(onset) > 1 and bool(np.all(np.diff(x) > 0))  # or the module refuses it
@@ -281,7 +319,7 @@ def find_fronts(
     if p_s_Pa is None:
         found["p_s_Pa"][:] = np.nan
     step = time_step_s(x, onset) if resolution_s is None else resolution
-    add_speeds(found, step)
+    add_speeds(found, step, errors)
     found.attrs = {name: getattr(used, name) for name in LENGTHS_AND_TIMES}
     found.attrs |= {"time_step_s": step, "notes": [*notes, *notes_of_record(onset, found, used)]}
     return found

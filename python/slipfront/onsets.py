@@ -12,7 +12,8 @@ import numpy as np
 import xarray as xr
 
 from slipfront.errors import CaseError
-from slipfront.files import DataError, one_line, open_file, read_table
+from slipfront.files import DataError, Table, one_line, open_file, read_table
+from slipfront.given import path
 from slipfront.read import require, require_ascending
 from slipfront.units import attributes
 
@@ -38,7 +39,7 @@ NONE = "none"  # in place of a mark: every number is a time
 
 def name_and_unit(column: str) -> tuple[str, str]:
     """Of `x_mm`, `x (mm)`, `x [mm]`, `x / mm` and `x mm`; the unit is empty where there is none."""
-    text = column.strip().replace("µ", "u").replace("μ", "u")
+    text = column.strip().replace("µ", "u").replace("μ", "u").replace("%", "percent")
     found = re.fullmatch(r"(.+?)(?:\s*[(\[]\s*|\s*/\s*|[_\s]+)([A-Za-z]+)\s*[)\]]?", text)
     if found is None:
         return text.lower(), ""
@@ -140,18 +141,19 @@ def n_places(n: int) -> str:
     return f"{n} place" if n == 1 else f"{n} places"
 
 
+def numbers_of(table: Table, column: str, may_miss: bool) -> np.ndarray:
+    """NaN for what stands in place of a number, where this may miss. [rows]"""
+    if not may_miss:
+        return table.numbers(column)
+    texts = ("" if cell.lower() in NEVER else cell for cell in table.texts(column))
+    return np.array(
+        [table.number(line, column, text, True) for (line, _), text in zip(table.rows, texts, strict=True)]
+    )
+
+
 def csv_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray]]:
     table = read_table(file, by_hand=True, separators=";\t,")
-
-    def numbers(name: str, may_miss: bool) -> np.ndarray:
-        if not may_miss:
-            return table.numbers(name)
-        texts = ("" if cell.lower() in NEVER else cell for cell in table.texts(name))
-        return np.array(
-            [table.number(line, name, text, True) for (line, _), text in zip(table.rows, texts, strict=True)]
-        )
-
-    return [name for name in table.header if name], numbers
+    return [name for name in table.header if name], lambda name, may_miss: numbers_of(table, name, may_miss)
 
 
 def mat_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray]]:
@@ -190,7 +192,7 @@ def read_onsets(file: str | Path, *, never_slipped: float | str | None = None) -
     Returns a Dataset over `node`, in SI units: x_m, ascending; onset_s, NaN where a place never slips;
     t_s_Pa and p_s_Pa. Its attribute `notes` says how many never slip, and by what mark.
     Raises Error where the file is no such record."""
-    file = Path(file)
+    file = path(file, "file")
     names, numbers = mat_columns(file) if file.suffix.lower() == ".mat" else csv_columns(file)
     chosen = columns_of(file, names)
     read = {quantity: numbers(name, quantity == "onset_s") for quantity, (name, _) in chosen.items()}

@@ -11,7 +11,8 @@ import slipfront
 from common import ROOT
 from slipfront import fronts_command
 
-SLOW = ROOT / "tests/cli/cases/onsets_slow_30_m_per_s.csv"
+CASES = ROOT / "tests/cli/cases"
+SLOW = CASES / "onsets_slow_30_m_per_s.csv"
 X_M = [-0.02, -0.01, 0.0, 0.01, 0.02]
 ONSET_S = [0.0, 1.25e-05, 2.5e-05, np.nan, 5e-05]
 
@@ -146,11 +147,73 @@ def test_intervals_of_few_onsets_are_wide():
         )
 
     three = interval([0.0, 1e-6, 3e-6])
-    # Slope 1.5 us/mm; squares about the line 1/6 us2 of 1 degree of freedom over 2 mm2; Student's t 12.706.
-    assert float(three.speed_low_m_per_s[0]) == pytest.approx(1e3 / (1.5 + 12.706 / np.sqrt(12)), rel=1e-9)
+    # Squares of times and places about their means 14/3 us2 and 2 mm2: slope sqrt(7/3) us/mm. About the line
+    # of time on place 1/6 us2 of 1 degree of freedom; Student's t 12.706.
+    low = 1e3 / (np.sqrt(7 / 3) + 12.706 / np.sqrt(12))
+    assert float(three.speed_low_m_per_s[0]) == pytest.approx(low, rel=1e-9)
     assert float(three.speed_high_m_per_s[0]) == np.inf
     two = interval([0.0, 1e-6])
     assert (float(two.speed_low_m_per_s[0]), float(two.speed_high_m_per_s[0])) == (0, np.inf)
+
+
+def test_a_place_that_two_fronts_share_is_on_neither_line():
+    """Slip begins between two of eight places and runs at 900 m/s to both sides."""
+    record = slipfront.read_onsets(CASES / "onsets_bilateral_8_places.csv")
+    found = slipfront.find_fronts(record.x_m, record.onset_s)
+    assert found.sizes["point"] == 9  # one place in both
+    assert found.speed_m_per_s.values == pytest.approx([900, 900], rel=1e-5)  # places have six digits
+    # Of three places two are left, and of two one.
+    x_m = np.array([0.0, 1.0, 2.0, 3.0])
+    few = slipfront.find_fronts(
+        x_m, [1e-3, 0.0, 1e-3, 2e-3], settings=slipfront.FrontSettings(min_length_m=0.5)
+    )
+    assert np.isnan(few.speed_m_per_s[0]) and float(few.speed_m_per_s[1]) == pytest.approx(1000)
+
+
+def test_lines_by_the_errors_of_places_and_times():
+    """A front past the gauges of a fault (Okubo, Yamashita and Fukuyama 2025, FB03-087, event 2); its authors
+    regress place on time."""
+    record = slipfront.read_onsets(CASES / "onsets_okubo_event02.csv")
+    within = (record.x_m >= 0.5) & (record.x_m <= 2.0)
+    x, t = record.x_m.values[within], record.onset_s.values[within]
+
+    def speed(**errors):
+        found = slipfront.find_fronts(x, t, **errors)
+        assert found.sizes["point"] == x.size
+        return float(found.speed_m_per_s[0])
+
+    place_on_time, time_on_place = np.polyfit(t, x, 1)[0], 1 / np.polyfit(x, t, 1)[0]
+    assert place_on_time == pytest.approx(28.8, abs=0.1)  # the authors' from places of their own
+    assert speed(place_error_m=5e-3) == pytest.approx(place_on_time, rel=1e-9)
+    assert speed(time_error_s=1e-4) == pytest.approx(time_on_place, rel=1e-9)
+    assert speed() == pytest.approx(np.sqrt(place_on_time * time_on_place), rel=1e-9)
+    # The closed form is the least of the weighted squares of the distances from the line.
+    errors = {"place_error_m": 20e-3, "time_error_s": 1e-3}
+    made = 1 / speed(**errors)
+
+    def squares(slope):
+        off = t - t.mean() - slope * (x - x.mean())
+        return (off @ off) / (1e-6 + (slope * 20e-3) ** 2)
+
+    assert squares(made) < min(squares(made * (1 + 1e-4)), squares(made * (1 - 1e-4)))
+    for wrong, why in (
+        ({"place_error_m": -1}, "place_error_m is -1; it must be at least 0"),
+        ({"time_error_s": np.inf}, "time_error_s is inf; it must be finite"),
+        ({"time_error_s": 0, "place_error_m": 0}, "both 0"),
+    ):
+        with pytest.raises(slipfront.CaseError, match=why):
+            slipfront.find_fronts(x, t, **wrong)
+
+
+def test_errors_on_the_command_line(capsys):
+    file = CASES / "onsets_okubo_event02.csv"
+    lines = [
+        printed(capsys, file, *options)[0]
+        for options in ((), ("--place-error-m", "5e-3"), ("--time-error-s", "1e-4"))
+    ]
+    assert len(set(lines)) == 3
+    assert fronts_command.main([str(file), "--place-error-m", "0"]) == 2
+    assert "--place-error-m and --time-error-s are both 0" in capsys.readouterr().err
 
 
 def test_a_search_of_many_places_can_be_interrupted():

@@ -36,8 +36,9 @@ def test_fronts_of_an_experiment(onsets, tmp_path, capsys):
     out = tmp_path / "fronts.csv"
     assert main(["fronts", str(onsets), "-o", str(out), "--c-l-m-per-s", "2000"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    # Slopes of lines through 21 and 31 times right to 0.5 us are right to 1/28 and 1/41.33 of 1 us/mm.
-    low, high = (f"speed 1000 m/s, {interval} (0.50 c_L)" for interval in ("965.5 to 1037", "976.4 to 1025"))
+    # The place where both begin is on neither line. Slopes of lines through 20 and 30 times right to 0.5 us
+    # are right to 1/26.6 and 1/39.96 of 1 us/mm.
+    low, high = (f"speed 1000 m/s, {interval} (0.50 c_L)" for interval in ("963.8 to 1039", "975.6 to 1026"))
     assert lines == [
         f"front 0: x = 0.0400 to 0.0000 m, 0.0 to 40.0 us, {low}, ends: record_edge",
         f"front 1: x = 0.0400 to 0.1000 m, 0.0 to 60.0 us, {high}, ends: record_edge",
@@ -100,7 +101,7 @@ def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, t
         ),
         (ONSETS, ["--c-l-m-per-s", "-1"], "--c-l-m-per-s is -1.0; it must be above 0 and finite"),
         (ONSETS, ["--plane", "strain"], "--plane counts with a material alone"),
-        (ONSETS, ["--l-star-m", "0"], "l_star_m is 0.0; it must be above 0"),
+        (ONSETS, ["--l-star-m", "0"], "--l-star-m is 0.0; it must be above 0"),
     ],
 )
 def test_mistakes_are_one_line(onsets, capsys, text, options, message):
