@@ -30,7 +30,8 @@ Lines = list[tuple[int, str]]  # of a file: numbers and contents of those that a
 
 def lines_of(file: Path) -> Lines:
     text = read_text(file)
-    require(text.endswith("\n"), file, "the last line is cut off" if text else "empty")
+    require(text.strip(), file, "empty")
+    require(text.endswith("\n"), file, "the last line is cut off")
     return [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
 
 
@@ -149,6 +150,8 @@ def read_sem2dpack(header: str | os.PathLike[str], *, first_time_s: float = 0.0)
     sizes = numbers(file, lines[1:2])[0]
     require(np.isfinite(sizes) & (sizes >= 0), file, "a size in line 2 is negative or not finite")
     require(len(sizes) in (2, 4), file, "line 2 is neither NPTS NDAT NSAMP DELT nor NPTS NDAT")
+    require(sizes[:3] == np.round(sizes[:3]), file, "a number of line 2 is not whole: NPTS, NDAT or NSAMP")
+    require(sizes[0] >= 2, file, "NPTS is below 2")
     n_places, n_fields = int(sizes[0]), int(sizes[1])
     require(n_fields >= 5, file, f"NDAT = {n_fields}: not a fault with friction (BC_DYNFLT)")
     points_m = numbers(file, lines[4:], 2)
@@ -296,11 +299,19 @@ class Receiver:
         require(before in self.head, self.file, f"no line '# {before}' and no column '{total}'")
         return self.column(change) + self.head[before]
 
-    def slip_m(self, slip: str, rate: str) -> np.ndarray:
-        if slip in self.columns:
-            return self.column(slip)
-        v = self.column(rate)
-        return np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(self.time_s))))
+    def slip_and_rate(self, along: str) -> tuple[np.ndarray, np.ndarray]:
+        """Along strike, s, or dip, d. The rate is that at which slip grows, where there is slip: the column
+        may be tens of mm/s long before slip grows, as it is in TPV104."""
+        if f"Sl{along}" in self.columns:
+            slip = self.column(f"Sl{along}")
+            return slip, np.gradient(slip, self.time_s)
+        v = self.column(f"SR{along}")
+        return np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(self.time_s)))), v
+
+    def largest_slip_m(self, along: str) -> float:
+        """0 where it is not told."""
+        known = any(np.isfinite(self.columns.get(f"{name}{along}", np.nan)).all() for name in ("Sl", "SR"))
+        return float(np.abs(self.slip_and_rate(along)[0]).max()) if known else 0.0
 
 
 def read_receiver(file: Path) -> Receiver:
@@ -349,7 +360,8 @@ def read_seissol_fault_receivers(
     """Fault receivers of SeisSol on a straight line, NAME-faultreceiver-00001.dat and so on, a file each.
     Times are those of the receiver with most of them; the others are interpolated linearly.
 
-    component: "strike" or "dip", of slip and shear traction.
+    component: "strike" or "dip", of slip and shear traction. The slip rate is that at which slip grows, by
+    central differences. In the attribute notes: where slip is larger along the other component.
 
     Format: SeisSol, src/DynamicRupture/Output/OutputManager.cpp and Documentation/fault-output.rst: Ts0, Td0
     and Pn0 are tractions, T_s, T_d and P_n their changes since those of the lines that begin with #. Signs:
@@ -365,14 +377,23 @@ def read_seissol_fault_receivers(
     x_m = along_line(places, np.array([[r.head[f"x{k}"] for k in (1, 2, 3)] for r in receivers]))
     c = component[0]
 
-    def over_time(values: list[np.ndarray]) -> np.ndarray:
+    def over_time(values: Iterable[np.ndarray]) -> np.ndarray:
         pairs = zip(receivers, values, strict=True)
         return np.stack([np.interp(time_s, r.time_s, each) for r, each in pairs], axis=1)
 
+    slips, rates = zip(*(r.slip_and_rate(c) for r in receivers), strict=True)
     fields = {
-        "slip_m": over_time([r.slip_m(f"Sl{c}", f"SR{c}") for r in receivers]),
-        "slip_rate_m_per_s": over_time([r.column(f"SR{c}") for r in receivers]),
+        "slip_m": over_time(slips),
+        "slip_rate_m_per_s": over_time(rates),
         "t_Pa": over_time([r.whole(f"T{c}0", f"T_{c}", f"T_{c}") for r in receivers]),
         "p_Pa": -over_time([r.whole("Pn0", "P_n", "P_0") for r in receivers]),
     }
-    return history_of(places[0], "SeisSol", time_s, x_m, fields)
+    history = history_of(places[0], "SeisSol", time_s, x_m, fields)
+    other = {"strike": "dip", "dip": "strike"}[component]
+    own_m = float(np.abs(fields["slip_m"]).max())
+    other_m = max(r.largest_slip_m(other[0]) for r in receivers)
+    history.attrs["notes"] = (
+        [f"slip is up to {other_m:.3g} m along {other}, {own_m:.3g} m along {component}: set component to "
+         f"'{other}' if that is meant"] if other_m > own_m else []
+    )  # fmt: skip
+    return history

@@ -447,6 +447,16 @@ def test_cohesion_is_no_part_of_the_coefficients():
     np.testing.assert_allclose(found.residual_t_Pa, 3e6, rtol=1e-9)
 
 
+@pytest.mark.parametrize("share, notes", [(1.0, 0), (0.95, 0), (0.85, 1), (0.5, 1), (1.15, 1)])
+def test_slip_that_its_rate_does_not_make(share, notes):
+    """Slip of one side with the rate of both halves the work; worth a note from 10 % on."""
+    history = changed(slip_m=share * made_history()["slip_m"])
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    found = slipfront.fracture_of_history(history, fronts, BODIES)
+    np.testing.assert_allclose(found.breakdown_work_J_per_m2, share, rtol=1e-6)
+    assert sum(note.startswith("slip_m grows by ") for note in found.notes) == notes
+
+
 def changed(**new):
     return {**made_history(), **new}
 
