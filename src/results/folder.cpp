@@ -271,14 +271,32 @@ bool is_own_publication(const fs::path& publishing) {
   throw UserError("{}: is not a {} of slipfront, which needs the name; move it away", path.string(), kind);
 }
 
+/// Refuses what this program makes nowhere: links, pipes and other kinds, at any depth.
+void require_files_and_folders(const fs::path& path) {
+  std::error_code error;
+  if (files::is_folder(path))
+    for (const auto& name : names_in(path)) require_files_and_folders(path / name);
+  else if (!fs::is_regular_file(fs::symlink_status(path, error)))
+    throw_foreign(path, "file");
+}
+
+/// Refuses what has the name of this program's own work, or is in it, but is not.
+void require_own(const fs::path& path, bool (*is_own)(const fs::path&)) {
+  if (!files::is_there(path)) return;
+  if (!files::is_folder(path)) throw_foreign(path, "folder");
+  require_files_and_folders(path);
+  if (!is_own(path)) throw_foreign(path, "folder");
+}
+
 }  // namespace
 
 ResultFolder::ResultFolder(const fs::path& dir, std::string work, const ResultFolder* within)
-    : dir_(files::resolved(dir)), work_(std::move(work)) {
+    : dir_(within == nullptr ? files::resolved(dir) : dir), work_(std::move(work)) {
   try {
     make(within);
     lock();
-    if (files::is_there(unfinished()) && !is_own_work(unfinished())) throw_foreign(unfinished(), "folder");
+    require_own(unfinished(), is_own_work);
+    require_own(publishing(), is_own_publication);
     finish_publication();
   } catch (...) {
     give_back();
@@ -449,7 +467,6 @@ void ResultFolder::publish(bool adds) {
 
 void ResultFolder::finish_publication() {
   if (!files::is_there(publishing())) return;
-  if (!is_own_publication(publishing())) throw_foreign(publishing(), "folder");
   if (files::is_there(publishing() / files::checksum_list)) {
     const auto fresh = fresh_set(publishing(), dir_);
     auto stale = set_of(dir_);
@@ -485,6 +502,15 @@ void remove_tree(const fs::path& path) {
   files::remove_file(path);
 }
 
+/// Refuses to publish a part that is not as its own list says.
+static void require_as_finished(const fs::path& part) {
+  try {
+    files::require_intact(part);
+  } catch (const UserError& error) {
+    throw WriteError("{}", error.what());
+  }
+}
+
 void seal(const fs::path& dir, const files::Checksums& others) {
   remove_cut_off(dir);
   files::Checksums checksums = others;
@@ -499,7 +525,7 @@ void seal(const fs::path& dir, const files::Checksums& others) {
       [&](const std::string& name) {
         const fs::path path(name);
         if (path.filename() != files::checksum_list || !path.has_parent_path()) return;
-        files::read_checksums(dir / path.parent_path());  // a damaged one is not published
+        require_as_finished(dir / path.parent_path());
         sealed.insert(path.parent_path().string());
       },
       [](const std::string&) {});

@@ -44,8 +44,8 @@ class SequenceSession {
 
  private:
   void begin(Checkpoints::Checkpoint* kept);
-  /// Refuses finished events that are not as they were.
-  void require_events_unchanged() const;
+  /// Refuses finished events, by their lists of checksums, and slow slip that are not as they were.
+  void require_parts_unchanged() const;
   /// The next event. @return false where none begins
   bool run_event();
   /// The state in which an event begins, as Sequence::next.
@@ -88,6 +88,11 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
       end = fmt::format("no event begins before the loading ends, at {:g} s",
                         sequence_->loading().back().time_s);
     write_case(folder_.unfinished(), config_);
+    try {
+      require_parts_unchanged();
+    } catch (const UserError& error) {
+      throw WriteError("{}", error.what());  // while this program has the folder
+    }
     write(end, {"complete", "", head_.sessions});
     folder_.publish();
     return {sequence_->events(), sequence_->loading(), end};
@@ -122,22 +127,19 @@ void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
   } catch (const StateError& error) {
     throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
   }
-  require_events_unchanged();
+  require_parts_unchanged();
+  for (std::size_t k = 0; k < sums_.size(); ++k) files::require_intact(event_dir(k + 1));
 }
 
-void SequenceSession::require_events_unchanged() const {
-  for (std::size_t k = 0; k < sums_.size(); ++k) {
-    const auto dir = event_dir(k + 1);
-    const auto list = dir / files::checksum_list;
-    if (!files::is_there(list) || files::sha256_of_file(list) != sums_[k])
-      throw UserError("{}: was changed since it was finished; restore it, or start a new run", dir.string());
-    files::require_intact(dir);
-  }
-  for (std::size_t k = 0; k < slow_sums_.size(); ++k) {
-    const auto file = slow_history(k + 1);
-    if (!files::is_there(file) || files::sha256_of_file(file) != slow_sums_[k])
-      throw UserError("{}: was changed since it was finished; restore it, or start a new run", file.string());
-  }
+void SequenceSession::require_parts_unchanged() const {
+  const auto require_sum = [](const std::filesystem::path& file, const std::string& sum) {
+    if (!files::is_there(file) || files::sha256_of_file(file) != sum)
+      throw UserError("{}: was changed since it was finished; restore it, or start a new run",
+                      file.parent_path().string());
+  };
+  for (std::size_t k = 0; k < sums_.size(); ++k)
+    require_sum(event_dir(k + 1) / files::checksum_list, sums_[k]);
+  for (std::size_t k = 0; k < slow_sums_.size(); ++k) require_sum(slow_history(k + 1), slow_sums_[k]);
 }
 
 bool SequenceSession::run_event() {
@@ -167,7 +169,6 @@ bool SequenceSession::run_event() {
                     Key("material.stiffness_damping_s"), what_was_kept(folder_));
   sequence_->take(finished.result);
   sums_.push_back(files::sha256_of_file(dir / files::checksum_list));
-  if (input::is_slow(config_)) slow_sums_.push_back(files::sha256_of_file(slow_history(sums_.size())));
   return true;
 }
 
@@ -191,7 +192,10 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
   };
   try {
     const auto* initial = sequence_->next(take_slow);
-    if (slow) slow->finish();
+    if (slow) {
+      slow->finish();
+      slow_sums_.push_back(files::sha256_of_file(slow_history(slow_sums_.size() + 1)));
+    }
     return initial;
   } catch (const UserError& error) {
     if (sequence_->events().empty()) throw;

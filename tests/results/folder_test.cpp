@@ -78,13 +78,28 @@ TEST_F(ResultFolders, UnfinishedWorkIsNotLostByAccident) {
   EXPECT_EQ(test::read_file(again.unfinished() / "run.json"), "so far");
 }
 
-TEST_F(ResultFolders, APipeIsNoKindOfWork) {
-  leave_unfinished(folder_.path(), "one");
-  const auto kind = folder_ / "unfinished/state/kind";
-  ASSERT_TRUE(fs::remove(kind));
-  ASSERT_EQ(mkfifo(kind.c_str(), 0600), 0);
-  const ResultFolder again(folder_.path(), "one");
-  EXPECT_FALSE(again.has_unfinished());  // nor does it wait for someone to write into it
+TEST_F(ResultFolders, LinksAndPipesInUnfinishedWorkAreRefusedAtAnyDepth) {
+  fs::create_directories(folder_ / "elsewhere");
+  test::write_file(folder_ / "elsewhere/run.json", "mine");
+  for (const char* name :
+       {"state", "state/kind", "events", "events/0001", "events/0001/unfinished", "run.json"})
+    for (const char* work : {"unfinished", "publishing"})
+      for (const bool is_pipe : {false, true}) {
+        const auto dir = folder_ / "out", path = dir / work / name;
+        fs::remove_all(dir);
+        leave_unfinished(dir, "one");
+        if (work != std::string("unfinished")) fs::rename(dir / "unfinished", dir / work);
+        fs::remove_all(path);
+        fs::create_directories(path.parent_path());
+        if (is_pipe)
+          ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+        else
+          fs::create_directory_symlink(folder_ / "elsewhere", path);
+        EXPECT_EQ(error_of([&] { const ResultFolder again(dir, "one"); }),
+                  path.string() + ": is not a file of slipfront, which needs the name; move it away");
+        EXPECT_TRUE(fs::exists(dir / work));
+      }
+  EXPECT_THAT(names_below(folder_ / "elsewhere"), UnorderedElementsAre("run.json"));
 }
 
 TEST_F(ResultFolders, WorkOfAnotherKindIsNotResumed) {

@@ -410,6 +410,23 @@ TEST(SequenceInAFolder, SlowSlipThatWasChangedIsRefused) {
   EXPECT_TRUE(is_complete(dir));
 }
 
+TEST(SequenceInAFolder, APartThatIsDamagedWhileALaterOneRunsIsNotPublished) {
+  for (const char* part :
+       {"slow/0001/interface.h5", "events/0001/energy.csv", "events/0001/checksums.sha256"}) {
+    const test::TemporaryFolder folder;
+    const auto dir = folder / "out", file = dir / "unfinished" / part;
+    auto hooks = undisturbed;
+    hooks.progress = [&, damaged = false](const char* now, std::int64_t, std::int64_t) mutable {
+      if (damaged || now != std::string("event 2")) return;
+      test::write_file(file, test::read_file(file).substr(0, 100));
+      damaged = true;
+    };
+    EXPECT_THROW(start_sequence(dir, rate_and_state_case(2), hooks), WriteError) << part;
+    EXPECT_FALSE(fs::exists(dir / "sequence.json"));
+    EXPECT_THAT(test::read_file(dir / "unfinished" / "sequence.json"), HasSubstr("\"failed\""));
+  }
+}
+
 /// As if the program had been killed in between.
 TEST(SequenceInAFolder, AnEventWithoutItsCaseFileYetBeginsAnew) {
   const test::TemporaryFolder folder;
