@@ -19,6 +19,7 @@ namespace {
 constexpr double more_slip = 2, rise_that_ends = 0.5;
 constexpr double fall_before_slip_ends = 0.01, fall_before_rise_ends = 0.1;  ///< over the peak
 constexpr double fall_that_counts = 1e-3;                                    ///< of the one so far
+constexpr double rounding = 1e-9;                                            ///< over the peak
 
 /// On which the coefficient acts.
 double pressure_Pa(const ContactModel& model, const Interface& s, std::size_t i) {
@@ -111,19 +112,20 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
   for (std::size_t i = first; i < end; ++i) {
     const bool begun = b.peak_t_Pa[i] > 0;
     const auto put = [&](std::vector<double>& to, double value) { to.push_back(begun ? value : nan); };
-    // Of the traction at its peak above the residual one.
+    // Of the traction at its peak above the residual one. Friction that has but risen falls by rounding.
     const double fall = b.peak_coefficient[i] - b.least_coefficient[i];
+    const bool weakens = fall > rounding * b.peak_coefficient[i] && b.work_J_per_m2[i] > 0;
     const double fall_Pa =
-        fall > 0 && b.peak_coefficient[i] > 0
+        weakens && b.peak_coefficient[i] > 0
             ? fall / b.peak_coefficient[i] * (b.peak_t_Pa[i] - model.law_at(i).cohesion_Pa())
             : 0;
-    put(of.work_J_per_m2, b.work_J_per_m2[i]);
+    put(of.work_J_per_m2, weakens ? b.work_J_per_m2[i] : nan);
     put(of.peak_t_Pa, b.peak_t_Pa[i]);
     put(of.residual_t_Pa, b.residual_t_Pa[i]);
     put(of.residual_coefficient, b.least_coefficient[i]);
     put(of.distance_m, fall_Pa > 0 ? 2 * b.work_J_per_m2[i] / fall_Pa : nan);
     put(of.time_s, fall_Pa > 0 ? 2 * b.impulse_Pa_s[i] / fall_Pa : nan);
-    of.complete.push_back(begun && b.work_J_per_m2[i] > 0 && b.impulse_Pa_s[i] > 0 ? s.broken[i] : 0);
+    of.complete.push_back(begun && weakens && b.impulse_Pa_s[i] > 0 ? s.broken[i] : 0);
   }
   return of;
 }

@@ -90,32 +90,39 @@ inline const LoadingRow& strongest(std::span<const LoadingRow> rows) {
   return *std::ranges::max_element(rows, {}, &LoadingRow::shear_over_normal);
 }
 
+/// Slow slip before an event has a row every so many steps; from so many rows on only where it has changed.
+inline constexpr std::int64_t steps_per_slow_row = 4;
+inline constexpr std::size_t all_slow_rows = 4096;
+
 /// An event of a sequence, in numbers.
 struct SequenceEvent {
   double begin_s = 0;  ///< since the tilt
   double shear_m = 0;
   double begin_x_m = nan, from_x_m = nan, to_x_m = nan;
-  double length_m = 0, nucleation_length_m = nan;
+  double length_m = 0, longest_patch_m = 0, nucleation_length_m = nan;
   double is_global = 0;
   double potency_m2 = 0, mean_slip_m = 0, max_slip_m = 0;
   double normal_force_N_per_m = 0, shear_force_N_per_m = 0, friction_before = 0, friction_after = 0;
   double stress_drop_Pa = nan;
-  double released_J_per_m = 0, friction_work_J_per_m = 0, breakdown_work_J_per_m = 0, wave_loss_J_per_m = 0;
+  double released_J_per_m = 0, friction_work_J_per_m = 0, wave_loss_J_per_m = 0;
+  double breakdown_work_J_per_m = nan;
   double predicted_from_x_m = nan, predicted_to_x_m = nan;
-  double slip_s = 0;
+  double slip_s = nan;
   double n_fronts = 0, median_speed_m_per_s = nan;
 
   template <class Archive>
   void serialize(Archive& archive);
 };
 
-inline constexpr std::array<Column<SequenceEvent, double>, 25> sequence_event_fields = {{
+inline constexpr std::array<Column<SequenceEvent, double>, 26> sequence_event_fields = {{
     {"begin_s", "s", "time since the tilt at which it begins", &SequenceEvent::begin_s},
     {"shear_m", "m", "displacement of the top edge or the pusher then", &SequenceEvent::shear_m},
-    {"begin_x_m", "m", "where slip begins inside", &SequenceEvent::begin_x_m},
+    {"begin_x_m", "m", "where slip begins inside; the middle of nodes that begin together", &SequenceEvent::begin_x_m},
     {"from_x_m", "m", "left end of what slips", &SequenceEvent::from_x_m},
     {"to_x_m", "m", "right end", &SequenceEvent::to_x_m},
     {"length_m", "m", "length of the interface that slips", &SequenceEvent::length_m},
+    {"longest_patch_m", "m", "length of the longest stretch of it without a gap",
+     &SequenceEvent::longest_patch_m},
     {"nucleation_length_m", "m", "nucleation length before it: what slips over less stops by itself",
      &SequenceEvent::nucleation_length_m},
     {"is_global", "1", "1 where all nodes inside slip", &SequenceEvent::is_global},
@@ -131,7 +138,8 @@ inline constexpr std::array<Column<SequenceEvent, double>, 25> sequence_event_fi
     {"released_J_per_m", "J/m", "energy stored in bodies and machine before less that at rest",
      &SequenceEvent::released_J_per_m},
     {"friction_work_J_per_m", "J/m", "energy that friction takes", &SequenceEvent::friction_work_J_per_m},
-    {"breakdown_work_J_per_m", "J/m", "that above the residual traction: fracture energy times area",
+    {"breakdown_work_J_per_m", "J/m",
+     "that above the residual traction, over the nodes where friction has fallen: fracture energy times area",
      &SequenceEvent::breakdown_work_J_per_m},
     {"wave_loss_J_per_m", "J/m", "energy of the waves left at its end", &SequenceEvent::wave_loss_J_per_m},
     {"predicted_from_x_m", "m",
@@ -144,9 +152,10 @@ inline constexpr std::array<Column<SequenceEvent, double>, 25> sequence_event_fi
      &SequenceEvent::median_speed_m_per_s},
 }};
 
-/// Whether an event has grown beyond its nucleation length.
+/// Whether an event has grown beyond its nucleation length. Where all slips, the length may be that of a
+/// stiffer block: on a soft machine the whole block slips as one.
 inline bool has_nucleated(const SequenceEvent& event) {
-  return event.length_m > event.nucleation_length_m;
+  return event.is_global != 0 || event.longest_patch_m > event.nucleation_length_m;
 }
 
 template <class Archive>

@@ -11,6 +11,9 @@
 
 namespace slipfront::results {
 
+/// Which numbers are written: of complete results finite ones, of others those that there are.
+enum class Numbers { finite, any };
+
 /// What the root of every file of results says of where it comes from.
 struct Origin {
   std::string title;

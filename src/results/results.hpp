@@ -12,7 +12,10 @@
 #include "record/energies.hpp"
 #include "record/record.hpp"
 #include "record/sequence.hpp"
+#include "results/rows.hpp"
 
+/// Tables of a run. Each throws BlowUp where a number of a complete result is not finite, but for those that
+/// may be missing, which are left empty.
 namespace slipfront::results {
 
 struct NamedColumn {
@@ -27,22 +30,27 @@ void write_static(const std::filesystem::path& file, const record::StaticState& 
 /// fronts.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, t_s_Pa, p_s_Pa, t_d_Pa, p_d_Pa, t_r_Pa,
 /// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, speed_kind (fronts::SpeedKind), a row per front and node in the order
 /// of travel; what is undefined is left empty.
-void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts);
+void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
+                  Numbers numbers = Numbers::finite);
 
 /// fracture.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, record::breakdown_fields of the node and
 /// fracture::passage_fields, a row per front and node in the order of travel; what is undefined is left
 /// empty.
 void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
-                    const fracture::Recorded& recorded, const fracture::Bodies& bodies);
+                    const fracture::Recorded& recorded, const fracture::Bodies& bodies,
+                    Numbers numbers = Numbers::finite);
 
 /// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per
 /// instant; the first is the start.
-void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies);
+void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies,
+                    Numbers numbers = Numbers::finite);
 
 /// loading.csv: event (the number of those that have begun), phase (record::LoadingPhase),
 /// record::loading_fields, the terms of record::Energies, record::wave_loss, imbalance_J_per_m.
-void write_loading(const std::filesystem::path& file, std::span<const record::LoadingRow> rows);
+void write_loading(const std::filesystem::path& file, std::span<const record::LoadingRow> rows,
+                   Numbers numbers = Numbers::finite);
 /// events.csv: event (its number, from 1), record::sequence_event_fields; what is undefined is left empty.
-void write_events(const std::filesystem::path& file, std::span<const record::SequenceEvent> events);
+void write_events(const std::filesystem::path& file, std::span<const record::SequenceEvent> events,
+                  Numbers numbers = Numbers::finite);
 
 }  // namespace slipfront::results

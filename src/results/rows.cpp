@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -71,6 +72,8 @@ RowFile::RowFile(const std::filesystem::path& path, std::uint64_t head_bytes)
 
 RowFile::RowFile(const std::filesystem::path& path, std::uint64_t head_bytes, const Extent& extent)
     : file_(reopened(path, head_bytes, extent.bytes)) {
+  n_values_ = extent.n_values;
+  n_finite_ = extent.n_finite;
   add_bytes(path, head_bytes, extent.bytes, sum_);
   if (sum_.digest() != extent.checksum)
     throw UserError("{}: was changed or damaged since the last checkpoint; start the run again",
@@ -80,11 +83,15 @@ RowFile::RowFile(const std::filesystem::path& path, std::uint64_t head_bytes, co
 void RowFile::write(std::span<const double> values) {
   file_.write(std::as_bytes(values));
   sum_.add(std::as_bytes(values));
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  if (n_finite_ == n_values_)
+    n_finite_ += static_cast<std::uint64_t>(std::ranges::find_if_not(values, is_finite) - values.begin());
+  n_values_ += values.size();
 }
 
 Extent RowFile::sync() {
   file_.sync();
-  return {file_.length(), sum_.digest()};
+  return {file_.length(), sum_.digest(), n_values_, n_finite_};
 }
 
 void require_unchanged(const std::filesystem::path& path, std::uint64_t head_bytes, const Extent& extent) {

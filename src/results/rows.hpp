@@ -25,16 +25,20 @@ namespace slipfront::results {
 
 inline constexpr const char* rows_name = "rows";
 
+/// @throws BlowUp
+[[noreturn]] void throw_not_finite(const std::filesystem::path& file, const std::string& column);
+
 /// Bytes of a head with some bytes of names and places.
 std::uint64_t head_bytes(const Origin& origin, std::size_t others = 0);
 
 /// What a file holds so far.
 struct Extent {
-  std::uint64_t bytes = 0;  ///< with its head; 0 where there is no file yet
-  std::string checksum;     ///< of the rows
+  std::uint64_t bytes = 0;                   ///< with its head; 0 where there is no file yet
+  std::string checksum;                      ///< of the rows
+  std::uint64_t n_values = 0, n_finite = 0;  ///< numbers, and those before the first that is not finite
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(bytes, checksum);
+    archive(bytes, checksum, n_values, n_finite);
   }
 };
 
@@ -54,6 +58,7 @@ class RowFile {
  private:
   files::OutputFile file_;
   files::Sha256 sum_;
+  std::uint64_t n_values_ = 0, n_finite_ = 0;
 };
 
 /// Compares a file that is complete. @throws WriteError where it is not what was written

@@ -17,6 +17,21 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+/// Of the numbers in a row: the time and the fields.
+std::vector<const char*> names_of(const Table& table) {
+  std::vector names = {table.time.name};
+  for (const auto& field : table.fields) names.push_back(field.name);
+  return names;
+}
+
+/// @param names  of a row's time and fields, each of `n_places` numbers
+void require_finite(const std::filesystem::path& file, const std::vector<const char*>& names,
+                    std::size_t n_places, const Extent& extent) {
+  if (extent.n_finite == extent.n_values) return;
+  const auto in_row = extent.n_finite % (1 + (names.size() - 1) * n_places);
+  throw_not_finite(file, names[(in_row + n_places - 1) / n_places]);
+}
+
 }  // namespace
 
 ResultStream::ResultStream(std::filesystem::path dir, RunFiles files)
@@ -108,13 +123,20 @@ ResultStream::Extents ResultStream::keep() {
   return extents;
 }
 
-void ResultStream::finish() {
+void ResultStream::finish(Numbers numbers) {
   const auto extents = keep();
   require_unchanged(dir_ / history_file, files_.history.head_bytes(), extents.history);
   if (snapshots_) require_unchanged(dir_ / snapshot_file, files_.snapshots.head_bytes(), extents.snapshots);
   if (probes_) require_unchanged(dir_ / probe_file, files_.probes->head_bytes(), extents.probes);
   results::finish(dir_ / history_file, files_.history);
   if (probes_) results::finish(dir_ / probe_file, *files_.probes);
+  if (numbers == Numbers::any) return;
+  require_finite(dir_ / history_file, names_of(files_.history), files_.history.n_places(), extents.history);
+  if (probes_)
+    require_finite(dir_ / probe_file, names_of(*files_.probes), files_.probes->n_places(), extents.probes);
+  if (snapshots_)
+    require_finite(dir_ / snapshot_file, {"time", "u_x_m", "u_y_m", "v_x_m_per_s", "v_y_m_per_s"},
+                   files_.snapshots.n_nodes, extents.snapshots);
 }
 
 }  // namespace slipfront::results

@@ -61,7 +61,8 @@ class ResultStream : public motion::EventOutput {
   /// Waits until all that was given is on the device.
   Extents keep();
   /// The same, compares the files with what was given, and finishes them but for that of snapshots.
-  void finish();
+  /// @throws BlowUp where a number is not finite that has to be
+  void finish(Numbers numbers = Numbers::finite);
 
  private:
   void begin_snapshot(double time_s);

@@ -117,6 +117,8 @@ struct Status {
 int sessions_of(const std::filesystem::path& file);
 /// Of a run that has ended.
 Status status_of(const Result& result);
+/// What it may write so.
+results::Numbers numbers_of(const Status& status);
 
 inline constexpr const char* run_file = "run.json";
 inline constexpr const char* case_file = "case.resolved.toml";

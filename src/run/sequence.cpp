@@ -143,8 +143,42 @@ std::string Sequence::end() const {
   return {};
 }
 
+void Sequence::require_stands(double time_s, double shear_m, const std::vector<double>& t_Pa,
+                              const std::vector<double>& p_Pa) const {
+  const auto& plate = config_.plate;
+  const auto& x_m = at_rest_.tractions.x_m;
+  const auto at = fmt::format("{:.6g} s after the tilt, at a shear of {:.6g} m", time_s, shear_m);
+  double force = 0, shear_force = 0, moment = 0, from_m = nan, to_m = nan;
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    const double p = p_Pa[k] * initial_.tributary_m[k];
+    force += p;
+    shear_force += t_Pa[k] * initial_.tributary_m[k];
+    moment += p * x_m[k];
+    if (!(p > 0)) continue;
+    if (std::isnan(from_m)) from_m = x_m[k];
+    to_m = x_m[k];
+  }
+  const double acts_m = moment / force;
+  // A pressure above 0 acts further inside, unless a single node bears it.
+  const bool stands = force > 0 && std::min(acts_m - from_m, to_m - acts_m) > 0.5 * plate.element_size_m;
+  if (!stands && plate.sides != mesh::Sides::periodic)
+    throw UserError(
+        "{} the plate tips: its normal force acts at the end of the contact, x = {:.4g} m; choose a "
+        "lower {} or a larger {}",
+        at, acts_m, Key("plate.height_m"), Key("plate.width_m"));
+  const double most_m = std::max(plate.width_m, plate.height_m);
+  const double edge_m =
+      shear_m - held_.shear_m - held_.moved_m - shear_force / plate.machine.shear_stiffness_Pa;
+  if (std::isinf(path_.end_s()) && !(edge_m <= most_m))
+    throw UserError(
+        "{} no event has begun, and the loaded edge has moved by more than the plate's size, {:g} m: "
+        "nothing brings one about; give {}, or choose other loads or friction",
+        at, most_m, Key("sequence.end_s"));
+}
+
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
   const double time = phase == LoadingPhase::loaded ? path_.end_s() : time_s(state.shear_m);
+  require_stands(time, state.shear_m + held_.moved_m, state.tractions.t_s_Pa, state.tractions.p_s_Pa);
   auto loaded = row(phase, time, state.shear_m + held_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
   add_state(state, loaded);
@@ -252,12 +286,13 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
 
 bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   // Rows of the loading come where the fastest slip rate has doubled or halved and where F_S/F_N turns, those
-  // of the interface by steps.
+  // of the interface by steps, and when there are many where rates or states have changed, too.
   constexpr double row_factor = 2;
-  constexpr std::int64_t steps_per_row = 4;
   const auto from = loading_.back();
   const auto& state = slow_->state();
   double row_rate_m_per_s = 0, last_row_s = -infinity;
+  std::size_t n_rows = 0;
+  std::vector<double> row_V_m_per_s, row_psi;
   const auto u_tilted = relative(initial_, statics_.tilted());
   const auto give_row = [&] {
     if (std::exchange(last_row_s, state.time_s) == state.time_s) return;  // the end is such a step, too
@@ -266,6 +301,23 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
         {state.psi}};
     for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += held_.moved_m - u_tilted.x_m[k];
     slow_rows(row);
+    ++n_rows;
+    row_V_m_per_s = state.slip_rate_m_per_s;
+    row_psi = state.psi;
+  };
+  const auto has_changed = [&] {
+    // Of psi over a; rates have doubled or halved, of nodes that are not far slower than the fastest: those
+    // of nodes that bear little go up and down by some per cent from step to step.
+    constexpr double of_state = 0.1, of_rate = 0.5, slow = 0.1;
+    const double least_m_per_s = slow * state.fastest_m_per_s();
+    for (std::size_t k = 0; k < row_psi.size(); ++k) {
+      const double V = std::abs(state.slip_rate_m_per_s[k]), row_V = std::abs(row_V_m_per_s[k]);
+      if (state.contact[k] == statics::Contact::stick &&
+          (std::abs(state.psi[k] - row_psi[k]) > of_state * slow_->friction().a()[k] ||
+           std::abs(V - row_V) > of_rate * std::max({V, row_V, least_m_per_s})))
+        return true;
+    }
+    return false;
   };
   const auto friction = [&] {
     const auto force = statics::contact_force(state.p_Pa, state.t_Pa, initial_.tributary_m);
@@ -278,7 +330,10 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   const auto after_step = [&] {
     if (!monitor_(0, 0))
       throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after the tilt", state.time_s));
-    if ((slow_->n_steps() - n_before) % steps_per_row == 0) give_row();
+    require_stands(state.time_s, state.shear_m + held_.moved_m, state.t_Pa, state.p_Pa);
+    if ((slow_->n_steps() - n_before) % record::steps_per_slow_row == 0 &&
+        (n_rows < record::all_slow_rows || has_changed()))
+      give_row();
     const double rate = state.fastest_m_per_s();
     const bool has_turned = turns.see(friction());
     if (has_turned || rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
@@ -346,6 +401,7 @@ void Sequence::take(const Result& result) {
   if (!held_.rests_since_s.empty())
     for (const auto& onset : event.record.onsets) held_.rests_since_s[onset.node] = held_.time_s;
   rest();
+  require_stands(held_.time_s, shear_m, at_rest_.tractions.t_s_Pa, at_rest_.tractions.p_s_Pa);
   auto rests = row(LoadingPhase::at_rest, held_.time_s, shear_m, at_rest_.tractions);
   add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
@@ -376,20 +432,30 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
   e.begin_s = before.time_s;
   e.shear_m = before.shear_m;
   std::vector<bool> slips(record.x_m.size());
+  std::vector<std::size_t> first;  // nodes that begin together
   double first_s = nan, last_s = nan;
   for (const auto& onset : record.onsets) {
     slips[onset.node] = true;
-    if (!std::isnan(first_s) || !is_inside(onset.node)) continue;
-    first_s = onset.time_s;
-    e.begin_x_m = record.x_m[onset.node];
+    if (!is_inside(onset.node)) continue;
+    if (std::isnan(first_s)) first_s = onset.time_s;
+    if (onset.time_s <= first_s + result.substep_s) first.push_back(static_cast<std::size_t>(onset.node));
+  }
+  if (!first.empty()) {
+    // Of several patches the one that comes first.
+    const auto begins = [&](std::size_t node) { return std::ranges::find(first, node) != first.end(); };
+    auto from = first.front(), to = from;
+    while (from > 0 && begins(from - 1)) --from;
+    while (begins(to + 1)) ++to;
+    e.begin_x_m = 0.5 * (record.x_m[from] + record.x_m[to]);
   }
   for (const auto& stop : record.stops)
     if (is_inside(stop.node)) last_s = stop.time_s;
   e.slip_s = last_s - first_s;
   e.is_global = 1;
-  double drop_N_per_m = 0;
+  double drop_N_per_m = 0, patch_m = 0;
   for (std::size_t k = 0; k < slips.size(); ++k) {
     if (!slips[k]) {
+      patch_m = 0;
       if (is_inside(static_cast<std::int32_t>(k))) e.is_global = 0;
       continue;
     }
@@ -397,12 +463,12 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
     e.from_x_m = std::isnan(e.from_x_m) ? record.x_m[k] : e.from_x_m;
     e.to_x_m = record.x_m[k];
     e.length_m += a;
+    e.longest_patch_m = std::max(e.longest_patch_m, patch_m += a);
     e.potency_m2 += slip_m * a;
     e.max_slip_m = std::max(e.max_slip_m, slip_m);
     drop_N_per_m += a * (state.tractions.t_s_Pa[k] - tractions_after.t_s_Pa[k]);
-    if (const double work = result.event.breakdown.work_J_per_m2[k]; !std::isnan(work))
-      e.breakdown_work_J_per_m += work * a;
   }
+  e.breakdown_work_J_per_m = result.event.breakdown.total_work_J_per_m(initial_.tributary_m);
   e.nucleation_length_m = result.rupture.of_nodes.nucleation_length_m.value_or(nan);
   if (e.length_m > 0) {
     e.mean_slip_m = e.potency_m2 / e.length_m;

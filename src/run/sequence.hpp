@@ -79,6 +79,10 @@ class Sequence {
   /// The row of slow slip after another one from which it has begun.
   record::LoadingRow slow_row(record::LoadingPhase phase, const record::LoadingRow& from) const;
 
+  /// Refuses a state in which the plate tips over or no event comes, however far it is loaded.
+  /// @param shear_m  since the tilt
+  void require_stands(double time_s, double shear_m, const std::vector<double>& t_Pa,
+                      const std::vector<double>& p_Pa) const;
   /// Finds the equilibrium of held_.
   void rest();
   /// At which the loading brings about a shear beyond held_.moved_m.

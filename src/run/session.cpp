@@ -341,7 +341,7 @@ void Session::write_results(const Finished& run) {
   write_static(dir_, config_, run.initial);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
-  stream_->finish();
+  stream_->finish(numbers_of(status));
   stream_.reset();
 }
 

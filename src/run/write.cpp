@@ -55,12 +55,11 @@ Json energy_json(const record::Energies& e) {
 
 /// What friction takes: the breakdown at tips, and heat at the residual traction.
 Json friction_work_json(const Result& result, const InitialState& initial) {
-  const auto& work = result.event.breakdown.work_J_per_m2;
-  double breakdown = 0;
-  for (std::size_t k = 0; k < work.size(); ++k)
-    if (!std::isnan(work[k])) breakdown += work[k] * initial.tributary_m[k];
+  const double breakdown = result.event.breakdown.total_work_J_per_m(initial.tributary_m);
   const double all = -result.event.energies.back().friction_work;
-  return {{"breakdown_J_per_m", breakdown}, {"residual_J_per_m", all - breakdown}};
+  const bool weakens = !std::isnan(breakdown);
+  return {{"breakdown_J_per_m", weakens ? Json(breakdown) : Json()},
+          {"residual_J_per_m", weakens ? all - breakdown : all}};
 }
 
 Json loads_json(const FoundLoads& loads) {
@@ -289,6 +288,10 @@ Status status_of(const Result& result) {
   return {};
 }
 
+results::Numbers numbers_of(const Status& status) {
+  return status.name == "complete" ? results::Numbers::finite : results::Numbers::any;
+}
+
 std::string resolved_text(const input::Case& config) {
   auto resolved = config;
   if (!resolved.prestress.file.empty()) resolved.prestress.file = prestress_file;
@@ -381,8 +384,10 @@ void write_sequence(const std::filesystem::path& dir, const input::Case& config,
                     std::span<const record::SequenceEvent> events,
                     std::span<const record::LoadingRow> loading, const std::string& end,
                     const Status& status) {
-  results::write_events(dir / "events.csv", events);
-  results::write_loading(dir / "loading.csv", loading);
+  const bool goes_on = status.name == "running" || status.name == "complete";
+  const auto numbers = goes_on ? results::Numbers::finite : results::Numbers::any;
+  results::write_events(dir / "events.csv", events, numbers);
+  results::write_loading(dir / "loading.csv", loading, numbers);
   auto json = about(config, status);
   json["end"] = end.empty() ? Json() : Json(end);
   json["wave_speeds"] = speeds_json(wave_speeds(config.material));
@@ -398,11 +403,12 @@ void write_sequence(const std::filesystem::path& dir, const input::Case& config,
 void write_so_far(const std::filesystem::path& dir, const Result& result,
                   std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status) {
-  results::write_fronts(dir / "fronts.csv", result.fronts);
+  const auto numbers = numbers_of(status);
+  results::write_fronts(dir / "fronts.csv", result.fronts, numbers);
   results::write_fracture(dir / "fracture.csv", result.fronts,
                           {result.event.record.x_m, result.event.breakdown, result.event.tip_slip},
-                          bodies_of(result.config));
-  results::write_energies(dir / "energy.csv", energies);
+                          bodies_of(result.config), numbers);
+  results::write_energies(dir / "energy.csv", energies, numbers);
   write_json(dir, run_json(result, initial, status));
 }
 
@@ -414,7 +420,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   stream.sample(event.history);
   if (!event.probes.time_s.empty()) stream.probe(event.probes);
   for (const auto& snapshot : event.snapshots) stream.snapshot(snapshot);
-  stream.finish();
+  stream.finish(numbers_of(status_of(result)));
   if (!event.snapshots.empty()) {
     const auto mesh = whole_snapshot_mesh({initial.mesh, initial.base});
     results::finish_snapshots(dir / results::snapshot_file, mesh.slabs,

@@ -113,9 +113,13 @@ TEST(Breakdown, OfRateWeakeningEndsWhereTheRateIsLargest) {
 
 TEST(Breakdown, WithoutAFallThereIsNone) {
   const auto found = passed(Coulomb{}, [](double, double) { return 0.5; }).found();
-  EXPECT_NEAR(found.work_J_per_m2[1], 0, 1e-9);
-  EXPECT_TRUE(std::isnan(found.distance_m[1]));
-  EXPECT_EQ(found.complete[1], 0);
+  const auto risen = passed(Coulomb{}, [](double, double slip_m) { return 0.5 + 1e4 * slip_m; }).found();
+  for (const auto& none : {found, risen}) {
+    EXPECT_TRUE(std::isnan(none.work_J_per_m2[1]));
+    EXPECT_TRUE(std::isnan(none.distance_m[1]));
+    EXPECT_TRUE(std::isnan(none.time_s[1]));
+    EXPECT_EQ(none.complete[1], 0);
+  }
 }
 
 TEST(Breakdown, UnderWayIsNotComplete) {

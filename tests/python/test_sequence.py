@@ -583,7 +583,7 @@ def test_extents_of_events_are_those_of_cracks_in_the_tractions_before(tmp_path)
     sequence = slipfront.run(write_case(tmp_path, WEAKENING), output=tmp_path / "out", progress=False)
     events = sequence.events
     d_c_m, three_process_zones_m = 4e-6, 0.015
-    nucleated = (events.length_m > events.nucleation_length_m).to_numpy()  # others stop before
+    nucleated = (events.longest_patch_m > events.nucleation_length_m).to_numpy()  # others stop before
     assert (nucleated == (events.mean_slip_m > d_c_m)).all() and not nucleated.all()
     ran = np.flatnonzero(nucleated)
     assert len(ran) > 1

@@ -9,6 +9,8 @@
 #include <memory>
 #include <numeric>
 
+#include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "files/files.hpp"
 #include "histories.hpp"
 #include "mesh/plate.hpp"
@@ -157,12 +159,43 @@ TEST_F(TextFiles, OfTextThatFailsLeavesWhatWasThere) {
 }
 
 TEST_F(TextFiles, HasARowPerNodeAtFullPrecision) {
-  write_static(folder_ / "static.csv",
-               {{0, 0.1}, {1.0 / 3, -2}, {4e6, std::numeric_limits<double>::quiet_NaN()}});
+  write_static(folder_ / "static.csv", {{0, 0.1}, {1.0 / 3, -2}, {4e6, 5e6}},
+               std::vector<NamedColumn>{{"mu_s", {0.5, nan}}});
   EXPECT_EQ(test::read_file(folder_ / "static.csv"),
-            "x_m,t_s_Pa,p_s_Pa\n"
-            "0,0.3333333333333333,4000000\n"
-            "0.1,-2,\n");
+            "x_m,t_s_Pa,p_s_Pa,mu_s\n"
+            "0,0.3333333333333333,4000000,0.5\n"
+            "0.1,-2,5000000,\n");
+}
+
+TEST_F(TextFiles, HoldFiniteNumbersAndEmptyFieldsWhereTheyMayBeMissing) {
+  const auto is_refused = [&](const char* name, const char* column, auto&& write) {
+    EXPECT_THROW(write(Numbers::finite), BlowUp) << column;
+    EXPECT_THAT(error_of([&] { write(Numbers::finite); }),
+                StartsWith((folder_ / name).string() + ": " + column + " is not finite"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / name));
+    write(Numbers::any);  // of what has blown up
+    EXPECT_TRUE(std::filesystem::remove(folder_ / name));
+  };
+  for (const double value : {nan, infinity, -infinity}) {
+    record::Energies energies;
+    energies.friction_work = value;
+    is_refused("energy.csv", "friction_work_J_per_m", [&](Numbers numbers) {
+      write_energies(folder_ / "energy.csv", std::vector{energies}, numbers);
+    });
+    record::LoadingRow row;
+    row.shear_over_normal = value;
+    is_refused("loading.csv", "shear_over_normal",
+               [&](Numbers numbers) { write_loading(folder_ / "loading.csv", std::vector{row}, numbers); });
+    record::SequenceEvent event;
+    event.max_slip_m = value;
+    is_refused("events.csv", "max_slip_m",
+               [&](Numbers numbers) { write_events(folder_ / "events.csv", std::vector{event}, numbers); });
+  }
+  record::SequenceEvent event;
+  write_events(folder_ / "events.csv", std::vector{event});  // begin_x_m and others are not known
+  event.begin_x_m = infinity;
+  is_refused("events.csv", "begin_x_m",
+             [&](Numbers numbers) { write_events(folder_ / "events.csv", std::vector{event}, numbers); });
 }
 
 TEST_F(TextFiles, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "base/numbers.hpp"
 #include "histories.hpp"
 #include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
@@ -173,6 +174,30 @@ TEST_F(Stream, DoesNotFinishAFileThatWasChangedMeanwhile) {
               (folder_ / name).string() +
                   ": is not what was written: it was changed, damaged or removed meanwhile");
   }
+}
+
+TEST_F(Stream, ANumberThatIsNotFiniteIsToldByItsColumn) {
+  for (const bool goes_on : {false, true}) {
+    auto bad = row(3);
+    bad.t_Pa.back() = nan;
+    std::optional<ResultStream> stream(std::in_place, folder_.path(), files());
+    give(*stream, 0, 3);
+    stream->sample(bad);
+    const auto extents = stream->keep();
+    if (goes_on) {
+      stream.reset();
+      stream.emplace(folder_.path(), files(), extents);
+    }
+    stream->sample(row(4));
+    EXPECT_EQ(error_of([&] { stream->finish(); }).find((folder_ / history_file).string() + ": t_Pa is not"),
+              0U);
+  }
+  ResultStream stream(folder_.path(), files());
+  auto bad = row(0);
+  bad.time_s.back() = infinity;
+  stream.sample(bad);
+  stream.finish(Numbers::any);  // of what has blown up
+  EXPECT_EQ(test::read(folder_ / history_file, "time_s").values.size(), 1U);
 }
 
 TEST_F(Stream, AFullDiskIsToldByTheFilesName) {

@@ -83,7 +83,7 @@ class FileSizeLimit {
   rlimit old_{};
 };
 
-/// The message of the UserError or WriteError that `call` throws; "(nothing thrown)" otherwise.
+/// The message of the UserError, WriteError or BlowUp that `call` throws; "(nothing thrown)" otherwise.
 template <class Call>
 std::string error_of(Call&& call) {
   try {
@@ -91,6 +91,8 @@ std::string error_of(Call&& call) {
   } catch (const UserError& error) {
     return error.what();
   } catch (const WriteError& error) {
+    return error.what();
+  } catch (const BlowUp& error) {
     return error.what();
   }
   return "(nothing thrown)";
