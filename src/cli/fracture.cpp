@@ -20,6 +20,8 @@
 #include "files/files.hpp"
 #include "fracture/prediction.hpp"
 #include "run/choices.hpp"
+#include "run/initial_state.hpp"
+#include "run/notes.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -91,7 +93,16 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
   if (options.fracture_energy_J_per_m2)
     friction.fracture_energy_J_per_m2 = {*options.fracture_energy_J_per_m2};
   if (options.residual_coefficient) friction.residual_coefficient = {*options.residual_coefficient};
-  const auto p = given.placing_errors([&] { return run::predict_fronts(config, friction, options.x_m); });
+  std::optional<run::FrontPredictor> predictor;
+  try {
+    given.placing_errors([&] { return predictor.emplace(config), true; });
+  } catch (const UserError& error) {
+    if (!input::is_slow(config)) throw;
+    given.placing_errors([&] { return run::check(config); });  // else it is the case that is refused
+    print_output(fmt::format("note: {}\n", run::no_static_state(error)));
+    return;
+  }
+  const auto p = given.placing_errors([&] { return predictor->predict(friction, options.x_m); });
   const auto& of = p.of_fronts;
   const double c_S = solid::shear_speed_m_per_s(config.material);
   std::string text = fmt::format("statics of {}, {} nodes on the interface\n", p.bodies, p.n_nodes);

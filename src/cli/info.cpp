@@ -69,6 +69,14 @@ void add_steps(const input::Case& config, const run::Info& info, Listing& list) 
   if (input::is_sequence(config))
     list.add("sequence", fmt::format("at most {} events; steps, disk and time are those of one to time.end_s",
                                      config.sequence.max_events));
+  if (info.needs.slow_steps > 0)
+    list.add("slow slip",
+             fmt::format("about {:.2g} steps to {}, {:.3g} GB; time and disk have them once",
+                         info.needs.slow_steps,
+                         std::isfinite(config.sequence.end_s) || !config.sequence.path.times_s.empty()
+                             ? "the end of the loading"
+                             : "the first event",
+                         info.needs.slow_bytes * 1e-9));
   const auto& machine = config.plate.machine;
   if (std::isfinite(machine.shear_stiffness_Pa))
     list.add("machine along x", fmt::format("{:g} Pa", machine.shear_stiffness_Pa));

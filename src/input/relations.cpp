@@ -445,6 +445,10 @@ void check_sequence(const Case& config) {
     throw UserError(
         "{} = initial_pressure leaves no pressure to slow slip between events; choose none or pressure",
         Key("friction.regularisation"));
+  if (config.time.precision == motion::Precision::single_precision)
+    throw UserError(
+        "{} = single rounds more than the small events of a sequence change; choose double, or {} = 1",
+        Key("time.precision"), events);
   check_path(config.sequence.path);
   const double quiet_s = config.time.quiet_s;
   if (!(quiet_s < config.time.end_s))

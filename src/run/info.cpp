@@ -3,11 +3,14 @@
 #include <cmath>
 #include <future>
 #include <memory>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "input/friction_along_x.hpp"
 #include "input/pressure.hpp"
@@ -15,6 +18,7 @@
 #include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
+#include "run/initial_state.hpp"
 #include "run/notes.hpp"
 #include "run/run.hpp"
 #include "run/subdomains.hpp"
@@ -206,6 +210,13 @@ Timed whole_to_time(const input::Case& config, const Meshes& meshes) {
   return timed;
 }
 
+/// Of three evaluations a step, each with two dense products and friction at all nodes.
+double expected_slow_s(const Info& info) {
+  constexpr double s_per_pair = 3 * 2 * 0.4e-9, s_per_node = 3 * 100e-9;
+  const auto n = static_cast<double>(info.n_interface);
+  return info.needs.slow_steps * n * (s_per_pair * n + s_per_node);
+}
+
 /// The columns of a part, no more than show the rate.
 Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_processes,
                    IsolatedSubdomain& part) {
@@ -270,7 +281,15 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
   const bool is_by_interface = n_processes && root_has_interface_only(config, *n_processes);
   const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
   add_sizes(config, meshes, info);
-  if (const auto loaded = loaded_state(config, meshes)) {
+  std::optional<LoadedState> loaded;
+  std::string not_loaded;
+  try {
+    loaded = loaded_state(config, meshes);
+  } catch (const UserError& error) {
+    if (!input::is_slow(config)) throw;
+    not_loaded = no_static_state(error);
+  }
+  if (loaded) {
     info.loads = loaded->loads;
     info.rupture = rupture_outlook(config, loaded->common, mesh::tributary_lengths_m(meshes.plate));
   } else {
@@ -297,9 +316,10 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
     info.node_updates_per_s =
         measured_rate_per_s(config, timed, *timed.stepper, std::max(1, static_cast<int>(steps)));
   }
-  info.expected_s =
-      info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
+  info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info) +
+                    expected_rest_s(info) + expected_slow_s(info);
   info.notes = notes_of_case(config, info.rupture, info.step_s);
+  if (!not_loaded.empty()) info.notes.push_back(not_loaded);
   if (n_processes) info.shared = shared_by(config, meshes, timed, *n_processes, info);
   return info;
 }

@@ -15,6 +15,7 @@
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
+#include "run/loading_path.hpp"
 #include "run/needs.hpp"
 #include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
@@ -170,13 +171,56 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
 
 namespace {
 
-/// Slip that strengthens with the slip rate everywhere stays slow, and no event ends it.
-void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate) {
-  const auto& sequence = config.sequence;
-  if (!input::is_slow(config) || std::isfinite(sequence.end_s) || !sequence.path.times_s.empty()) return;
+/// Of all nodes, or the one law that they have.
+std::vector<interface::FrictionLaw> laws_of(const input::Case& config, const mesh::Mesh& plate) {
   auto laws = input::friction_at(config, interface_x_m(plate));
   if (laws.empty()) laws.push_back(config.friction);
-  for (const double V_m_per_s : {0.0, input::inertia_slip_rate_m_per_s(config)}) {
+  return laws;
+}
+
+/// Steady sliding has to have friction at all rates of slow slip: no state belongs to less than none.
+void require_steady_friction(const input::Case& config, const mesh::Mesh& plate) {
+  constexpr int n_rates = 100;
+  const double from = config.friction.parameter("V_i_m_per_s"), to = input::tip_slip_rate_m_per_s(config);
+  for (const auto& law : laws_of(config, plate))
+    for (int k = 0; k <= n_rates; ++k) {
+      const double V_m_per_s = from * std::pow(to / from, static_cast<double>(k) / n_rates);
+      const double coefficient = interface::friction_coefficient(law, V_m_per_s, 0);
+      if (!(coefficient > 0))
+        throw UserError(
+            "the coefficient of steady sliding, by {} and {}, is {:.4g} at {:.3g} m/s; it must be above 0 up "
+            "to "
+            "the rate of a front's tip, {:.3g} m/s",
+            Key("friction.f0"), Key("friction.b"), coefficient, V_m_per_s, to);
+    }
+}
+
+/// An event begins above the rate at which the load lets the interface slide, and below that of its fronts.
+void require_rate_of_events(const input::Case& config) {
+  const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_over_c_L");
+  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
+  const double tip_m_per_s = input::tip_slip_rate_m_per_s(config);
+  if (rate_m_per_s > tip_m_per_s)
+    throw UserError(
+        "{} is {:.4g} m/s, beyond the rate of a front's tip, {:.4g} m/s: fronts would be slow slip, and "
+        "no event; choose a smaller one",
+        key, rate_m_per_s, tip_m_per_s);
+  const double load_m_per_s = std::max(LoadingPath(config).fastest_m_per_s(), top_speed_m_per_s(config));
+  if (rate_m_per_s <= load_m_per_s)
+    throw UserError(
+        "{} is {:.4g} m/s, not above the speed of the load, {:.4g} m/s: steady sliding would be an event; "
+        "choose "
+        "a larger one, or a slower load ({}, {})",
+        key, rate_m_per_s, load_m_per_s, speed, Key("sequence.times_s"));
+}
+
+/// Slip that strengthens with the slip rate everywhere stays slow, and no event ends it: at rates from rest
+/// to those of the load, which slow slip comes to.
+void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate) {
+  const auto& sequence = config.sequence;
+  if (std::isfinite(sequence.end_s) || !sequence.path.times_s.empty()) return;
+  const auto laws = laws_of(config, plate);
+  for (const double V_m_per_s : {0.0, top_speed_m_per_s(config)}) {
     const auto weakens = [&](const auto& law) {
       const auto response = interface::state_response(law, V_m_per_s);
       return response->b > response->a;
@@ -184,8 +228,9 @@ void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate
     if (std::ranges::any_of(laws, weakens)) return;
   }
   throw UserError(
-      "friction does not weaken with the slip rate at any node (a >= b): slip stays slow, and no "
-      "event comes; choose {}, or a larger {}",
+      "friction does not weaken with the slip rate at any node (a >= b), at rest or at the load's speed: "
+      "slip "
+      "stays slow, and no event comes; choose {}, or a larger {}",
       Key("sequence.end_s"), Key("friction.b"));
 }
 
@@ -204,7 +249,11 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
-  require_end_of_slow_slip(config, meshes.plate);
+  if (input::is_slow(config)) {
+    require_steady_friction(config, meshes.plate);
+    require_rate_of_events(config);
+    require_end_of_slow_slip(config, meshes.plate);
+  }
   meshes.mu_s = ratios_at_rest(config, meshes.plate);
   if (!is_prestressed(config)) return meshes;
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate));

@@ -47,4 +47,13 @@ double LoadingPath::speed_m_per_s(double time_s, double shear_m) const {
   return (this->shear_m(end_s) - shear_m) / (end_s - time_s);
 }
 
+double LoadingPath::fastest_m_per_s() const {
+  if (times_s_.empty()) return speed_m_per_s_;
+  double fastest_m_per_s = 0;
+  for (std::size_t k = 1; k < times_s_.size(); ++k)
+    fastest_m_per_s =
+        std::max(fastest_m_per_s, (shears_m_[k] - shears_m_[k - 1]) / (times_s_[k] - times_s_[k - 1]));
+  return fastest_m_per_s;
+}
+
 }  // namespace slipfront::run

@@ -22,6 +22,7 @@ class LoadingPath {
   double part_end_s(double time_s) const;
   /// Speed from a place at a time to where the path is at the end of that part.
   double speed_m_per_s(double time_s, double shear_m) const;
+  double fastest_m_per_s() const;
 
  private:
   double speed_m_per_s_;

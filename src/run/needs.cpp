@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -14,10 +15,13 @@
 #include "record/energies.hpp"
 #include "record/probes.hpp"
 #include "record/record.hpp"
+#include "record/sequence.hpp"
 #include "results/snapshots.hpp"
 #include "run/choices.hpp"
+#include "run/loading_path.hpp"
 #include "run/snapshot_plan.hpp"
 #include "solid/operator.hpp"
+#include "stability/rupture.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/statics.hpp"
 
@@ -186,6 +190,26 @@ Budget memory(const input::Case& config, const Size& size, const Holder& holder,
   return most;
 }
 
+/// Steps of slow slip: as long as the direct effect, a p/V, allows against the stiffness of the shortest
+/// wave, so that they follow from the slip, and those in which rates and states change.
+double slow_steps_of(const input::Case& config) {
+  constexpr double of_pair = 2.5;     // the stable step of the orders 3 and 2, times the fastest decay
+  constexpr double of_changes = 2e3;  // of an event
+  const LoadingPath path(config);
+  double compliance_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material) +
+                               config.plate.width_m / config.plate.machine.shear_stiffness_Pa;
+  if (input::has_base_body(config))
+    compliance_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(input::base_material(config));
+  const double p_Pa = input::nominal_pressure_Pa(config);
+  const double slip_m = std::isfinite(path.end_s())
+                            ? path.shear_m(path.end_s())
+                            : interface::static_coefficient(config.friction) * p_Pa * compliance_m_per_Pa;
+  // Of waves of two elements.
+  const double stiffness_Pa_per_m =
+      0.5 * std::numbers::pi * stability::modulus_Pa(bodies_of(config)) / config.plate.element_size_m;
+  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * config.friction.parameter("a") * p_Pa);
+}
+
 /// The existing folder in which `folder` is or will be made.
 std::filesystem::path existing_parent(const std::filesystem::path& folder) {
   std::error_code ignored;
@@ -289,6 +313,13 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   n.history_bytes = n.history_rows * number *
                     static_cast<double>(record::history_row_values(static_cast<std::size_t>(size.n_interface),
                                                                    config.friction.states().size()));
+  if (input::is_slow(config)) {
+    n.slow_steps = slow_steps_of(config);
+    // With those in which rates and states change then.
+    const double most_rows = 2.0 * record::all_slow_rows;
+    n.slow_bytes =
+        std::min(n.slow_steps / record::steps_per_slow_row, most_rows) * n.history_bytes / n.history_rows;
+  }
   const double of_stress = output.snapshot_stress ? results::tensor_values_per_cell * number : 0;
   if (n.snapshots > 0)
     n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (in_snapshot + of_stress));
@@ -303,6 +334,7 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
 
 Budget Needs::disk() const {
   return {{"the history", history_bytes, Message("a larger {}", Key("output.history_interval_s"))},
+          {"slow slip", slow_bytes, larger_elements()},
           {"snapshots", snapshot_bytes,
            Message("fewer {}, a longer {:leaf}, {:leaf} = false", Key("output.snapshot_times_s"),
                    Key("output.snapshot_interval_s"), Key("output.snapshot_stress"))},

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input/default_rules.hpp"
+#include "input/friction_along_x.hpp"
 #include "input/pressure.hpp"
 #include "input/table_along_x.hpp"
 #include "run/choices.hpp"
+#include "run/loading_path.hpp"
 #include "run/snapshot_plan.hpp"
 #include "stability/verdict.hpp"
 
@@ -53,6 +56,10 @@ void add_odd_units(const NamedMaterial& body, double width_m, Notes& notes) {
              notes);
   if (m.density_kg_per_m3 < 10 || m.density_kg_per_m3 > 3e4)
     add_note(table + ".density_kg_per_m3", m.density_kg_per_m3, "no solid has this density; is it in kg/m3?",
+             notes);
+  if (m.poissons_ratio < -0.99)
+    add_note(table + ".poissons_ratio", m.poissons_ratio,
+             "near -1 the body hardly resists a change of shape beside one of volume, and rounding grows",
              notes);
   const double damping_length_m = m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
   if (damping_length_m > 0.1 * width_m)
@@ -156,6 +163,59 @@ void add_rows_beside_nodes(const input::Case& config, Notes& notes) {
   }
 }
 
+/// What goes on between events and ends them.
+void add_sequence(const input::Case& config, Notes& notes) {
+  if (!input::is_sequence(config)) return;
+  constexpr double few = 0.1, most_of_strength = 0.01, most_healing = 0.1;
+  const double period_s = std::get<double>(input::default_rule_of("time.quiet_s")->value(config));
+  if (config.time.quiet_s < few * period_s)
+    notes.push_back(
+        fmt::format("time.quiet_s = {:g} s is far below 4 H/c_S = {:.3g} s: waves of an event that come back "
+                    "later count for nothing, or begin the next event",
+                    config.time.quiet_s, period_s));
+  const double load_m_per_s = std::max(LoadingPath(config).fastest_m_per_s(), top_speed_m_per_s(config));
+  const double wave_Pa =
+      load_m_per_s * solid::shear_modulus_Pa(config.material) / solid::shear_speed_m_per_s(config.material);
+  const double strength_Pa =
+      interface::static_coefficient(config.friction) * input::nominal_pressure_Pa(config);
+  if (wave_Pa > most_of_strength * strength_Pa)
+    notes.push_back(fmt::format(
+        "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: between events it is "
+        "taken for static, and in them it works; are {} slow enough?",
+        load_m_per_s, wave_Pa / strength_Pa,
+        config.sequence.path.times_s.empty() ? "loading.shear_speed_over_c_L"
+                                             : "sequence.times_s and loading.shear_speed_over_c_L"));
+  if (config.sequence.healing_per_e_fold > most_healing)
+    add_note("sequence.healing_per_e_fold", config.sequence.healing_per_e_fold,
+             "surfaces gain some 0.01 in mu_s an e-fold of time at rest; is it in per cent?", notes);
+}
+
+/// A pusher that leaves nothing of the side.
+void add_pusher(const input::Case& config, Notes& notes) {
+  const auto& pusher = config.plate.pusher;
+  constexpr double most = 0.9;
+  const double share = (pusher.to_m - pusher.from_m) / config.plate.height_m;
+  if (pusher.is_there() && share > most)
+    notes.push_back(
+        fmt::format("the pusher covers {:.3g} % of the side (loading.pusher_from_m, pusher_to_m): the side "
+                    "stays straight",
+                    100 * share));
+}
+
+/// A tip that may be that of a wave.
+void add_tip_rate(const input::Case& config, Notes& notes) {
+  constexpr double few = 0.1;
+  if (!config.friction.has_state() || !config.tip_slip_rate_m_per_s) return;
+  auto by_law = config;
+  by_law.tip_slip_rate_m_per_s.reset();
+  const double usual_m_per_s = input::tip_slip_rate_m_per_s(by_law);
+  if (*config.tip_slip_rate_m_per_s < few * usual_m_per_s)
+    notes.push_back(fmt::format(
+        "friction.tip_slip_rate_m_per_s = {:g}: far below {:.3g} m/s, where radiation takes over: a "
+        "tip may be the shear wave that runs ahead of the rupture",
+        *config.tip_slip_rate_m_per_s, usual_m_per_s));
+}
+
 /// What damping decides.
 void add_damping(const input::Case& config, Notes& notes) {
   const auto bodies = bodies_of(config);
@@ -246,6 +306,11 @@ void add_times(const input::Case& config, double step_s, Notes& notes) {
 
 }  // namespace
 
+std::string no_static_state(const UserError& error) {
+  return fmt::format("no static state to predict from: {}. A run finds by slow slip where its events begin",
+                     error.what());
+}
+
 std::vector<std::string> notes_of_case(const input::Case& config, const RuptureOutlook& rupture,
                                        double step_s) {
   Notes notes;
@@ -273,6 +338,9 @@ std::vector<std::string> notes_of_case(const input::Case& config, const RuptureO
   add_free_sides(config, notes);
   add_stiff_machine(config, notes);
   add_damping(config, notes);
+  add_sequence(config, notes);
+  add_pusher(config, notes);
+  add_tip_rate(config, notes);
   if (config.time.step_factor > 1)
     notes.emplace_back("the step is above the largest stable one (time.allow_unstable)");
   for (const auto* more : {&rupture.doubts, &rupture.cautions})

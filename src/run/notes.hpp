@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "input/case.hpp"
 #include "run/outlook.hpp"
 
@@ -14,5 +15,9 @@ namespace slipfront::run {
 /// @param step_s  of the run, or as estimated_size gives it
 std::vector<std::string> notes_of_case(const input::Case& config, const RuptureOutlook& rupture,
                                        double step_s);
+
+/// Of a sequence under a law with a state, whose run needs none: why there is no static state to predict
+/// from.
+std::string no_static_state(const UserError& error);
 
 }  // namespace slipfront::run

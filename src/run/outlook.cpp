@@ -157,9 +157,13 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Ruptu
   return doubts;
 }
 
-std::string caution_of_mesh(double zone_elements, bool may_pass_c_S) {
+std::string caution_of_mesh(double zone_elements, bool may_pass_c_S, bool has_state) {
   const auto is =
       fmt::format("the process zone has {:.3g} elements at rest and fewer in motion", zone_elements);
+  if (has_state && may_pass_c_S && zone_elements < elements_for_transition)
+    return is +
+           "; below 16 the mesh may decide whether fronts pass c_S, the outcome and not its digits alone: "
+           "compare with half the plate.element_size_m";
   if (zone_elements < fewest_elements) return is + "; below 3 the mesh decides on fronts and their speeds";
   if (zone_elements < elements_for_peaks) return is + "; peaks of slip rate and traction need 6";
   if (zone_elements < elements_for_transition && may_pass_c_S)
@@ -181,7 +185,8 @@ std::string caution_of_trigger(const input::Case& config, const statics::Equilib
 void add_cautions(const input::Case& config, RuptureOutlook& o) {
   if (!o.process_zone_elements) return;
   const auto bodies = bodies_of(config);
-  if (auto caution = caution_of_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median));
+  if (auto caution = caution_of_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
+                                     config.friction.has_state());
       !caution.empty())
     o.cautions.push_back(std::move(caution));
   const double length_m = stability::damping_length_m(bodies);

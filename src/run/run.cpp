@@ -272,6 +272,20 @@ void measure(Result& result, const InitialState& initial, const RuptureOutlook& 
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, "
                     "and drives the motion behind the front",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
+  if (config.time.precision == motion::Precision::single_precision) {
+    constexpr double most = 1e-3;
+    double largest = 0, imbalance = 0;
+    for (const auto& e : result.event.energies) {
+      imbalance = std::max(imbalance, std::abs(record::imbalance_J_per_m(e, before)));
+      for (const auto& term : record::energy_terms)
+        largest = std::max(largest, std::abs(e.*term.member - before.*term.member));
+    }
+    if (imbalance > most * largest)
+      result.warnings.push_back(fmt::format(
+          "time.precision = single leaves {:.2g} of the largest change of energy open: the motion is "
+          "small against what rounding takes from it; choose double",
+          imbalance / largest));
+  }
   const auto n_after = snapshots_after(config, result.event.time_s).size();
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const bool quiet = result.event.end == motion::EventEnd::quiet;

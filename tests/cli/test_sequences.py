@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sequences that tip, never end or are hardly meant: what is told, and that results are finite."""
+
+import csv
+import json
+import os
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from common import refusal, require_done, run_json, sets
+
+CASES = Path(__file__).parent / "cases" / "sequences"
+# Slow slip and an event in a fraction of a second.
+STICK_SLIP = (CASES / "stick_slip.toml", *sets("plate.element_size_m=0.02", "sequence.max_events=2"))
+# Two events of an instant.
+STICKING = """\
+[plate]
+element_size_m = 10e-3
+corner = "none"
+
+[event]
+kind = "spontaneous"
+
+[sequence]
+max_events = 2
+"""
+
+
+def rows_of(file):
+    with file.open() as stream:
+        return list(csv.DictReader(stream))
+
+
+def require_finite_numbers(folder):
+    """Of all tables and histories below a folder, but for fields that are empty."""
+    for file in folder.rglob("*.csv"):
+        for row in rows_of(file):
+            numbers = [value for name, value in row.items() if value and not name.endswith(("phase", "kind"))]
+            assert np.isfinite([float(value) for value in numbers]).all(), file
+    for file in folder.rglob("interface.h5"):
+        if file.stat().st_size > 8 and h5py.is_hdf5(file):
+            with h5py.File(file) as data:
+                assert np.isfinite(data["rows"]).all(), file
+
+
+@pytest.mark.parametrize(
+    "name, changes",
+    [
+        ("nan_rc0_min", ["sequence.inertia_slip_rate_m_per_s=6e-5"]),
+        ("tip_rs", []),
+        ("tip_forever", []),
+    ],
+)
+def test_a_plate_that_tips_ends_its_sequence(program, tmp_path, name, changes):
+    line = refusal(program("run", CASES / f"{name}.toml", "-o", "out", "-q", *sets(*changes)))
+    assert "s after the tilt, at a shear of" in line and "the plate tips" in line
+    require_finite_numbers(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "name, told",
+    [
+        (
+            "nan_rc0_min",
+            "sequence.inertia_slip_rate_m_per_s is 7.233e-06 m/s, not above the speed of the load",
+        ),
+        ("slow_slip_step_collapse", "the coefficient of steady sliding, by friction.f0 and friction.b, is -"),
+        ("slow_slip_endless_untold", "friction does not weaken with the slip rate at any node"),
+        ("single_precision_sequence", "time.precision = single"),
+    ],
+)
+@pytest.mark.parametrize("command", ["validate", "info", "run"])
+def test_what_comes_to_no_sequence_is_refused_before_it_runs(program, tmp_path, command, name, told):
+    output = ["-o", "out"] if command == "run" else []
+    assert told in refusal(program(command, CASES / f"{name}.toml", *output))
+    assert not (tmp_path / "out").exists()
+
+
+def test_steady_friction_along_x_has_to_be_above_0(program, write_case, tmp_path):
+    (tmp_path / "f0.csv").write_text("x_m,f0\n0,0.6\n0.2,0.05\n0.4,0.6\n")
+    case = (CASES / "stick_slip.toml").read_text().replace("[event]", 'file = "f0.csv"\n[event]')
+    line = refusal(program("validate", write_case(case)))
+    assert "the coefficient of steady sliding" in line and "must be above 0" in line
+
+
+def test_a_rate_of_events_beyond_that_of_fronts_is_refused(program):
+    changes = sets("sequence.inertia_slip_rate_m_per_s=10")
+    line = refusal(program("validate", *STICK_SLIP, *changes))
+    assert "beyond the rate of a front's tip" in line and "choose a smaller one" in line
+
+
+def test_a_load_without_end_that_brings_no_event_ends(program, write_case):
+    """Sliding is steady, however far: the block is far stiffer than (b - a) p/d_c."""
+    steady = sets(
+        "friction.law=rate_and_state_aging", "friction.a=0.5", "friction.b=0.505", "friction.d_c_m=1e-3"
+    )
+    case = [write_case(STICKING), *steady, *sets("friction.V_i_m_per_s=1e-6", "loading.mean_pressure_Pa=1e8")]
+    line = refusal(program("run", *case, "-o", "out", "-q"))
+    assert "no event has begun, and the loaded edge has moved by more than the plate's size, 0.2 m" in line
+
+
+@pytest.mark.parametrize("name", ["events", "events/0001", "slow", "slow/0001", "events/0001/unfinished"])
+@pytest.mark.parametrize("work", ["unfinished", "publishing"])
+def test_links_in_unfinished_work_are_refused(program, tmp_path, work, name):
+    """Before anything that they lead to is touched."""
+    for folder in (".", "0001", "state", "unfinished/state"):
+        (tmp_path / "mine" / folder).mkdir(parents=True, exist_ok=True)
+        for file in ("run.json", "interface.h5", "kind", "checksums.sha256", "case.resolved.toml"):
+            (tmp_path / "mine" / folder / file).write_text("precious")
+    require_done(program("run", *STICK_SLIP, "-o", "done", "-q"))
+    unfinished = tmp_path / "out" / work
+    (unfinished / "state").mkdir(parents=True)
+    (unfinished / "state" / "kind").write_text("run\n")
+    for done in ("case.resolved.toml", "checksums.sha256"):
+        (unfinished / done).write_bytes((tmp_path / "done" / done).read_bytes())
+    (unfinished / name).parent.mkdir(parents=True, exist_ok=True)
+    os.symlink(tmp_path / "mine", unfinished / name)
+    for arguments in (["--restart", "out"], [*STICK_SLIP, "-o", "out", "--overwrite"]):
+        line = refusal(program("run", *arguments, "-q"))
+        assert line.endswith(
+            f"out/{work}/{name}: is not a file of slipfront, which needs the name; move it away"
+        )
+    kept = [path.read_text() for path in (tmp_path / "mine").rglob("*") if path.is_file()]
+    assert kept == ["precious"] * 20
+
+
+def test_rows_of_slow_slip_are_thinned_and_foretold(program, tmp_path):
+    case = [CASES / "velocity_steps_disk.toml", *sets("plate.element_size_m=5e-3", "plate.height_m=25e-3")]
+    printed = require_done(program("info", *case)).stdout
+    forecast = next(line for line in printed.splitlines() if line.startswith("slow slip"))
+    assert "to the end of the loading" in forecast
+    foretold_GB = float(forecast.split("loading, ")[1].split(" GB")[0])
+    require_done(program("run", *case, "-o", "out", "-q"))
+    with h5py.File(tmp_path / "out/slow/0001/interface.h5") as data:
+        t = data["time_s"][:]
+    all_rows = 4096
+    assert all_rows < len(t) < 2 * all_rows
+    size_GB = (tmp_path / "out/slow/0001/interface.h5").stat().st_size * 1e-9
+    assert 0.4 * size_GB < foretold_GB < 3 * size_GB
+    assert t[-1] == 420
+
+
+@pytest.mark.parametrize("name", ["breakdown_negative_healing", "hardening_fracture_csv"])
+def test_breakdown_is_empty_where_friction_has_not_fallen(program, tmp_path, name):
+    require_done(program("run", CASES / f"{name}.toml", "-o", "out", "-q"))
+    rows = rows_of(tmp_path / "out" / "fracture.csv")
+    names = ("breakdown_work_J_per_m2", "weakening_distance_m", "weakening_time_s")
+    known = [[float(row[name]) for row in rows if row[name]] for name in names]
+    assert all((np.array(values) > 0).all() and max(values, default=0) < 1e6 for values in known)
+    assert len(known[0]) < len(rows)
+    of_all = run_json(tmp_path / "out")["friction_work"]["breakdown_J_per_m"]
+    assert of_all is None if name == "hardening_fracture_csv" else of_all > 0
+
+
+def test_events_count_by_their_longest_patch(program, tmp_path):
+    coarse = sets("plate.element_size_m=4e-3", "sequence.max_events=2")
+    printed = require_done(
+        program("run", CASES / "symmetric_patch_sequence.toml", "-o", "out", *coarse)
+    ).stdout
+    assert "\n1 of them longer than the nucleation length\n" in printed
+    first, second = rows_of(tmp_path / "out" / "events.csv")
+    # Two patches, at the ends of what the first one has broken.
+    assert float(second["longest_patch_m"]) < 0.6 * float(second["length_m"])
+    assert float(first["longest_patch_m"]) == float(first["length_m"])
+    assert float(first["begin_x_m"]) == pytest.approx(0.2, abs=1e-9)  # the middle
+
+
+def test_events_of_a_block_that_slips_as_one_count(program, tmp_path):
+    """On a soft machine it does though it is shorter than the nucleation length."""
+    soft = sets("loading.shear_stiffness_Pa=2e10", "friction.d_c_m=4e-6", "material.stiffness_damping_s=4e-6")
+    result = program("run", *STICK_SLIP, *soft, *sets("time.end_s=0.03"), "-o", "out")
+    assert "\n2 of them longer than the nucleation length\n" in require_done(result).stdout
+    for event in rows_of(tmp_path / "out" / "events.csv"):
+        assert event["is_global"] == "1"
+        assert float(event["nucleation_length_m"]) > float(event["longest_patch_m"])
+
+
+def test_info_and_fracture_take_a_sequence_that_runs(program):
+    case = [CASES / "tip_rs.toml", *sets("sequence.end_s=100")]
+    for command in ("info", "fracture"):
+        printed = require_done(program(command, *case)).stdout
+        assert "note: no static state to predict from: " in printed
+
+
+@pytest.mark.parametrize(
+    "base, changes, told",
+    [
+        (STICKING, ["time.quiet_s=1e-6"], "time.quiet_s = 1e-06 s is far below 4 H/c_S"),
+        (
+            STICKING,
+            ["sequence.times_s=[1e-6]", "sequence.shears_m=[20e-6]"],
+            "the load moves at up to 20 m/s",
+        ),
+        (STICKING, ["loading.shear_speed_over_c_L=1e-4"], "the load moves at up to"),
+        (STICKING, ["sequence.healing_per_e_fold=10"], "sequence.healing_per_e_fold = 10: "),
+        (STICKING, ["material.poissons_ratio=-0.999"], "material.poissons_ratio = -0.999: "),
+        (
+            STICKING,
+            [
+                "plate.element_size_m=5e-3",
+                "loading.mean_pressure_Pa=5e6",
+                "loading.pusher_from_m=5e-3",
+                "loading.pusher_to_m=0.1",
+            ],
+            "the pusher covers 95 % of the side",
+        ),
+        (
+            (CASES / "stick_slip.toml").read_text(),
+            ["friction.tip_slip_rate_m_per_s=1e-3"],
+            "friction.tip_slip_rate_m_per_s = 0.001: far below",
+        ),
+        (
+            (CASES / "stick_slip.toml").read_text(),
+            ["plate.element_size_m=0.04"],
+            "the outcome and not its digits alone",
+        ),
+    ],
+)
+def test_what_is_hardly_meant_is_told(program, write_case, base, changes, told):
+    case = write_case(base)
+    assert told not in require_done(program("validate", case)).stdout or told.startswith("the outcome")
+    assert told in require_done(program("validate", case, *sets(*changes))).stdout
+
+
+def test_wave_loss_is_right_to_half_a_step(program, tmp_path):
+    """It is below 0 in these events, by less than what friction takes in half a step where they begin."""
+    changes = sets("sequence.inertia_slip_rate_m_per_s=3.2e-5", "sequence.max_events=2")
+    changes += sets("time.precision=double", "time.interface_substeps=1")
+    require_done(program("run", CASES / "wave_loss_negative.toml", *changes, "-o", "out", "-q"))
+    for number, event in enumerate(rows_of(tmp_path / "out" / "events.csv"), 1):
+        folder = tmp_path / f"out/events/{number:04}"
+        with h5py.File(folder / "interface.h5") as data:
+            element_m = data["x_m"][1] - data["x_m"][0]
+            power_W_per_m = (data["slip_rate_m_per_s"][0] * data["t_Pa"][0]).sum() * element_m
+        half_step_J_per_m = 0.5 * run_json(folder)["dt_s"] * power_W_per_m
+        assert 0 < -float(event["wave_loss_J_per_m"]) < half_step_J_per_m
+        assert half_step_J_per_m < 0.03 * float(event["friction_work_J_per_m"])
+
+
+def test_energies_of_small_motions_need_double_precision(program, tmp_path):
+    case = [CASES / "single_precision_sequence.toml", *sets("sequence.max_events=1", "time.end_s=2e-4")]
+    printed = require_done(program("run", *case, "-o", "out")).stdout
+    assert "note: time.precision = single leaves" in printed
+    double = require_done(program("run", *case, "-o", "double", *sets('time.precision="double"'))).stdout
+    assert "time.precision" not in double
+
+
+def test_results_of_a_sequence_are_finite(program, tmp_path):
+    require_done(program("run", *STICK_SLIP, "-o", "out", "-q"))
+    require_finite_numbers(tmp_path / "out")
+    assert json.loads((tmp_path / "out/sequence.json").read_text())["imbalance_over_largest_energy"] < 1e-9
