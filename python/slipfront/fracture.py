@@ -94,16 +94,17 @@ def predict_fronts(
     Returns, over `point` in the order of travel of each front: x_m, direction, length_m of the crack,
     G_static_J_per_m2, fracture_energy_J_per_m2, v_tip_m_per_s, time_s since the fronts began; the last point
     of a front that arrests is the node that it does not break. In the attributes: starts, first_length_m,
-    critical_length_m, nucleation_length_m (slow slip over it runs away), arrests (directions), bodies, notes.
+    critical_length_m, nucleation_length_m (slow slip over it runs away), arrests (directions), bodies, notes,
+    doubts_of_arrest: why fronts may run on where they arrest by it.
     Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
     notes = []
-    before = None
+    measured = before = None
     if isinstance(case, OpenRun):
         if any(str(name).startswith("friction") for name in (*(changes or {}), *tables)):
             raise CaseError("friction of an opened run is what it came to: give its case to change friction")
         if energy is None or residual is None:
-            x_m, work, coefficient = measured_friction(case)
+            x_m, work, coefficient = measured = measured_friction(case)
             ends = f"{x_m[0]:.4g} to {x_m[-1]:.4g} m"
             notes = [f"friction beyond {ends}, where no front broke it down, is that at these ends"]
             energy = (x_m, work) if energy is None else energy
@@ -130,6 +131,8 @@ def predict_fronts(
         for name, values in found.pop("points").items()
     }
     points["direction"] = points["direction"].astype(np.int64)
+    if not found.pop("law_has_length") and measured is not None and energy[1] is measured[1]:
+        notes.append("the friction law has no length: its fracture energy is that of the run's mesh")
     found["notes"] += notes
     return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)
 

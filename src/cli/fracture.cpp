@@ -64,17 +64,22 @@ std::string csv(const fracture::Prediction& prediction) {
   return text;
 }
 
-std::string line_of(const fracture::PredictedFront& front, double c_S) {
+std::string line_of(const run::FracturePrediction& p, const fracture::PredictedFront& front, double c_S) {
   const auto& last = front.points.back();
   double fastest = 0;
   for (const auto& point : front.points) fastest = std::max(fastest, point.v_tip_m_per_s);
   const auto to = fmt::format("front to {}x: ", front.direction > 0 ? '+' : '-');
+  if (std::isinf(last.fracture_energy_J_per_m2) && fastest == 0)
+    return to + fmt::format("does not run: friction does not weaken at {:.4f} m\n", last.x_m);
   if (fastest == 0)
     return to + fmt::format("does not run: G {:.3g} J/m2, fracture energy {:.3g}\n", last.G_static_J_per_m2,
                             last.fracture_energy_J_per_m2);
   const auto runs = to + fmt::format("from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
                                      front.points.front().x_m, fastest, fastest / c_S);
   if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
+  if (!p.foretells_arrest(front))
+    return runs +
+           fmt::format("G at rest below the fracture energy from {:.4f} m on, see the note\n", last.x_m);
   if (std::isinf(last.fracture_energy_J_per_m2))
     return runs + fmt::format("arrests at {:.4f} m, where friction does not weaken\n", last.x_m);
   return runs +
@@ -119,7 +124,7 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
     text += fmt::format(
         "nucleation length {:.3g} m, of this sample where the crack begins: slow slip over it runs away\n",
         p.nucleation_length_m);
-  for (const auto& front : of.fronts) text += line_of(front, c_S);
+  for (const auto& front : of.fronts) text += line_of(p, front, c_S);
   for (const auto& note : given.notes()) text += fmt::format("note: {}\n", note);
   for (const auto& note : p.notes) text += fmt::format("note: {}\n", note);
   if (!options.output.empty()) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "cli/command.hpp"
@@ -130,7 +131,7 @@ std::string text_of(const stability::Spread& spread) {
 }
 
 /// What a law that weakens over a slip lets expect.
-void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
+void add_lengths(const run::RuptureOutlook& rupture, std::string_view law, Listing& list) {
   const auto& o = rupture.of_nodes;
   const bool has_state = rupture.tip_slip_rate_m_per_s.has_value();
   const auto add_zone = [&] {
@@ -149,8 +150,10 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
                            ? fmt::format("; the trigger has {:.3g} m", *rupture.trigger_length_m)
                            : std::string();
   list.add("nucleation length",
-           fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
-                       o.unstable_wavelength_m ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
+           has_state && law != "rate_and_state_aging"
+               ? std::string("unknown: that of the aging law does not hold for the slip law")
+               : fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
+                             has_state ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
   if (o.unstable_wavelength_m)
     list.add("unstable wavelengths",
              fmt::format("from {:.3g} m on, under the slip rate before the event (Rice, Ruina 1983)",
@@ -172,13 +175,14 @@ void add_cracks(const run::FracturePrediction& p, Listing& list) {
                                 of.first_length_m, of.critical_length_m)
                   : "none runs from there, however long";
   for (const auto& front : of.fronts)
-    if (front.end == fracture::PredictedEnd::arrest)
+    if (p.foretells_arrest(front))
       text += fmt::format("; to {}x it arrests at {:.4g} m", front.direction > 0 ? '+' : '-',
                           front.points.back().x_m);
+  if (!p.doubts_of_arrest.empty()) text += "; no arrest is foretold, see slipfront fracture";
   list.add("fronts as cracks", text);
 }
 
-void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
+void add_rupture(const run::RuptureOutlook& rupture, std::string_view law, Listing& list) {
   if (rupture.tip_slip_rate_m_per_s) {
     list.add("a front's tip",
              fmt::format("where the slip rate passes {:.3g} m/s", *rupture.tip_slip_rate_m_per_s));
@@ -191,7 +195,7 @@ void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
     list.add("seismic ratio 1/(1 + S)", text_of(rupture.of_nodes.drop_ratio));
     list.add("expected regime", rupture.of_nodes.regime);
   }
-  add_lengths(rupture, list);
+  add_lengths(rupture, law, list);
 }
 
 void add_mesh_choice(const input::Case& config, const run::MeshChoice& mesh, Listing& list) {
@@ -212,6 +216,10 @@ void add_mesh_choice(const input::Case& config, const run::MeshChoice& mesh, Lis
 
 void add_stability_of_sliding(const run::Info& info, Listing& list) {
   const auto& w = info.well_posedness;
+  if (!w.has_verdict()) {
+    list.add("uniform sliding", w.statement);
+    return;
+  }
   list.add("nominal pressure", fmt::format("{:.4g} Pa", w.sliding.pressure_Pa));
   list.add("weakening / radiation damping", fmt::format("{:.3g}", w.weakening_over_radiation));
   list.add("growth at two elements",
@@ -270,7 +278,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
                          speed_m_per_s, speed_m_per_s * config.time.end_s));
   add_stability_of_sliding(info, list);
-  add_rupture(info.rupture, list);
+  add_rupture(info.rupture, config.friction.name(), list);
   if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
   for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);

@@ -104,6 +104,7 @@ std::string fracture_text(const run::Result& result, const fronts::Front& front)
   const double gamma = fronts::median(work), G = fronts::median(G_slip), zone = fronts::median(zone_m);
   if (!(gamma > 0)) return {};
   auto text = fmt::format("  fracture energy {:.3g} J/m2 in the median", gamma);
+  if (!run::has_fracture_energy(result.config)) text += " (of this mesh: the law has no length)";
   // Few rows are those of a tip that hardly ran, or ran above the limiting speed.
   const auto n_known = std::ranges::count_if(G_slip, [](double g) { return std::isfinite(g); });
   if (2 * n_known > std::ssize(G_slip)) text += fmt::format(", G by slip {:.3g} J/m2", G);
@@ -117,7 +118,8 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
   const auto& event = result.event;
   if (initial.prescribed)
     print(
-        "prescribed tractions, t/p up to {:.4g}{}\n", initial.common.peak_ratio,
+        "prescribed tractions, t/p {} to {:.4g}{}\n", initial.common.peak_ratio < 0 ? "down" : "up",
+        initial.common.peak_ratio,
         result.config.prestress.file.empty() ? "" : fmt::format(" at x = {:.4g} m", initial.common.peak_x_m));
   else if (initial.ramp)
     print_ramp(*initial.ramp, initial.critical_shear_m);

@@ -86,7 +86,8 @@ class Growth {
             crack_.energy_release_rate_J_per_m2(tip.side()),
             fracture_energy_[node],
             tip.v_m_per_s,
-            time_s};
+            time_s,
+            node};
   }
   /// The nodes beside the crack that are nearest to breaking.
   void release_nearer() {

@@ -34,6 +34,7 @@ struct PredictedPoint {
   double fracture_energy_J_per_m2 = 0;
   double v_tip_m_per_s = 0;
   double time_s = nan;  ///< since the fronts began; not a number of a node that none breaks
+  std::size_t node = 0;
 };
 
 inline constexpr std::array<record::Column<PredictedPoint, double>, 6> predicted_fields = {{
@@ -54,6 +55,8 @@ struct PredictedFront {
   std::vector<PredictedPoint> points;  ///< in the order of travel; the last one of a front that arrests is
                                        ///< the node that it does not break
   PredictedEnd end = PredictedEnd::arrest;
+
+  bool arrests() const { return end == PredictedEnd::arrest; }
 };
 
 struct Prediction {

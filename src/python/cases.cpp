@@ -228,7 +228,7 @@ void bind_verdict(nb::module_& module) {
       .def_ro("weakening_over_radiation", &W::weakening_over_radiation,
               "-mu'(0) p over the radiation damping; above 1 strength drops at once on slip")
       .def_ro("fastest_growth_per_s", &W::fastest_growth_per_s,
-              "infinite where unbounded, 0 where none grows")
+              "infinite where unbounded, 0 where none grows, not a number where nothing tells")
       .def_ro("fastest_wavelength_m", &W::fastest_wavelength_m, "0 where growth rises at ever shorter waves")
       .def_ro("longest_wavelength_m", &W::longest_wavelength_m, "of the search")
       .def_ro("growth_in_crossing", &W::growth_in_crossing,

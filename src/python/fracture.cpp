@@ -49,7 +49,7 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   }
   std::vector<int> arrests;
   for (const auto& front : of.fronts)
-    if (front.end == fracture::PredictedEnd::arrest) arrests.push_back(front.direction);
+    if (front.arrests()) arrests.push_back(front.direction);
   nb::dict found;
   found["points"] = points;
   found["arrests"] = arrests;
@@ -59,6 +59,8 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   found["nucleation_length_m"] = p.nucleation_length_m;
   found["bodies"] = p.bodies;
   found["notes"] = p.notes;
+  found["law_has_length"] = run::has_fracture_energy(given.config());
+  found["doubts_of_arrest"] = p.doubts_of_arrest;
   return found;
 }
 

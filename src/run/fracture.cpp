@@ -2,10 +2,12 @@
 #include "run/fracture.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "base/caller.hpp"
@@ -24,8 +26,9 @@ namespace slipfront::run {
 
 namespace {
 
-/// Most elements along the interface: with a dense stiffness of the sample, and with kernels.
-constexpr double most_of_sample = 500, most_of_half_spaces = 2000;
+/// Of a sample, with a dense stiffness of its interface; and of half-spaces, with kernels.
+constexpr double most_columns_of_sample = 1500, most_unknowns_of_sample = 1e6,
+                 most_columns_of_half_spaces = 2000;
 /// Elements over the height of half-spaces, whose bodies do not matter.
 constexpr double rows_of_half_spaces = 32;
 
@@ -35,22 +38,57 @@ bool is_held(const input::Case& config) {
          (!input::has_base_body(config) || config.base.plate.top == mesh::Top::loaded);
 }
 
-/// The case in larger elements where it has more than `most` along the interface. Heights become whole
-/// multiples.
-input::Case in_fewer_elements(input::Case config, double most) {
+double columns_of(const mesh::Plate& plate) {
+  return std::round(plate.width_m / plate.element_size_m);
+}
+
+/// The height in whole elements.
+double height_in_elements_m(double height_m, double element_size_m) {
+  return std::max(1.0, std::round(height_m / element_size_m)) * element_size_m;
+}
+
+/// What elements of this size change the heights of the sample by, over them.
+double change_of_heights(const input::Case& config, double element_size_m) {
+  const auto change = [&](double height_m) {
+    return std::abs(height_in_elements_m(height_m, element_size_m) / height_m - 1);
+  };
+  const double of_plate = change(config.plate.height_m);
+  return input::has_base_body(config) ? std::max(of_plate, change(config.base.plate.height_m)) : of_plate;
+}
+
+/// The largest number of columns that a prediction takes, and of those near it that which changes heights
+/// least.
+double fewer_columns(const input::Case& config) {
+  const double columns = columns_of(config.plate);
+  if (!is_held(config)) return std::min(columns, most_columns_of_half_spaces);
+  const auto unknowns = approximate_unknowns(config);
+  const double too_many = (unknowns.of_plate + unknowns.of_base) / most_unknowns_of_sample;
+  if (columns <= most_columns_of_sample && too_many <= 1) return columns;
+  const double most = std::max(
+      2.0, std::floor(std::min(most_columns_of_sample, columns / std::sqrt(std::max(1.0, too_many)))));
+  double best = most;
+  for (double n = most; n >= std::max(2.0, 0.5 * most); --n) {
+    const double width_m = config.plate.width_m;
+    if (change_of_heights(config, width_m / n) < (1 - 1e-6) * change_of_heights(config, width_m / best))
+      best = n;
+  }
+  return best;
+}
+
+/// The case in larger elements where it has more of them than a prediction takes.
+input::Case in_fewer_elements(input::Case config) {
   auto& plate = config.plate;
-  const double columns = std::round(plate.width_m / plate.element_size_m);
-  const double h = plate.width_m / std::min(columns, most);
+  const double columns = columns_of(plate), fewer = fewer_columns(config);
+  if (fewer == columns && is_held(config)) return config;
+  const double h = plate.width_m / fewer;
   const auto fit = [&](mesh::Plate& body) {
-    const double rows = is_held(config) ? std::max(1.0, std::round(body.height_m / h)) : rows_of_half_spaces;
-    body.height_m = rows * h;
+    body.height_m = is_held(config) ? height_in_elements_m(body.height_m, h) : rows_of_half_spaces * h;
     body.coarsenings = 0;
   };
-  if (columns <= most && is_held(config)) return config;
   plate.element_size_m = h;
   fit(plate);
   if (input::has_base_body(config)) fit(config.base.plate);
-  if (plate.corner != mesh::Corner::none && columns > most) plate.corner = mesh::Corner::none;
+  if (plate.corner != mesh::Corner::none && fewer < columns) plate.corner = mesh::Corner::none;
   config.time.interface_rows = 1;
   return config;
 }
@@ -192,9 +230,63 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
   return {nearest(peak_x_m), nearest(peak_x_m)};
 }
 
+/// By which the exponents of slip behind a tip at rest and of stress before it differ from a half, where slip
+/// changes the pressure (docs/fracture.md).
+double exponent_by_pressure(const fracture::Bodies& bodies, double residual_coefficient) {
+  if (stability::are_alike(bodies)) return 0;
+  const double N = fracture::moving_stiffness_Pa(bodies, 0, 1).imag();
+  return std::atan(std::abs(residual_coefficient * N) / fracture::stiffness_Pa(bodies, 0)) / std::numbers::pi;
+}
+
+/// Median strength excess of the nodes that fronts run over; not a number under a law that never sticks.
+double median_strength_excess(const Laws& laws, const fracture::CrackLoads& loads,
+                              const std::vector<fracture::PredictedFront>& fronts) {
+  if (laws[0].has_state()) return nan;
+  std::vector<double> S;
+  for (const auto& front : fronts)
+    for (const auto& point : front.points) {
+      const auto k = point.node;
+      const double p_Pa = loads.p_Pa[k];
+      const double residual_Pa = interface::kinetic_coefficient(laws[k]) * p_Pa + laws[k].cohesion_Pa();
+      S.push_back(stability::strength_excess(
+          {loads.t_Pa[k], interface::static_strength_Pa(laws[k], p_Pa), residual_Pa}));
+    }
+  return stability::spread_of(std::move(S)).median;
+}
+
+/// Empty, or that fronts may pass c_S: those of equal bodies do from a length on, unless the first crack is
+/// longer than the critical one (Andrews 1985); of others no formula tells.
+std::string doubt_of_speeds(const fracture::Bodies& bodies, const fracture::Prediction& of, double S) {
+  if (!(S < stability::supershear_S)) return {};
+  const bool starts_critical = !of.starts;
+  double longest_m = 0;
+  for (const auto& front : of.fronts) longest_m = std::max(longest_m, front.points.back().length_m);
+  const double passes_at_m = 2 * stability::supershear_half_length_m(0.5 * of.critical_length_m, S);
+  if (stability::are_alike(bodies) && starts_critical && longest_m < passes_at_m) return {};
+  return fmt::format(
+      "S = {:.3g}, below 1.77, where fronts run: they may pass c_S, where G at rest tells neither speeds nor "
+      "arrest",
+      S);
+}
+
+/// Why fronts may run on where G at rest falls below the fracture energy; empty where nothing speaks against
+/// an arrest there.
+std::vector<std::string> doubts_of_arrest(const input::Case& config, bool by_law,
+                                          const std::string& of_speeds) {
+  std::vector<std::string> doubts;
+  if (input::starts_by_force(config))
+    doubts.emplace_back(
+        "the trigger's force drives fronts further than the energy release rate at rest tells");
+  if (!of_speeds.empty()) doubts.push_back(of_speeds);
+  if (config.friction.has_state() && by_law)
+    doubts.emplace_back("the residual friction depends on the slip rate");
+  return doubts;
+}
+
 /// What the prediction leaves out.
+/// @param residual  coefficient, the largest one
 void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
-               bool by_law, bool has_state_before, FracturePrediction& p) {
+               double residual, bool by_law, bool has_state_before, FracturePrediction& p) {
   const auto absorbs = [](const mesh::Plate& plate) {
     return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
   };
@@ -205,12 +297,20 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
         "they are taken in");
   if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
     p.notes.emplace_back("absorbing sides count as free ones");
-  if (interface::follows_pressure(config.regularisation) && !stability::are_alike(bodies))
-    p.notes.emplace_back("slip changes the pressure, which speeds leave out");
-  if (const double factor = config.plate.element_size_m / given.plate.element_size_m; factor > 1.01)
-    p.notes.push_back(
+  if (const double eps = exponent_by_pressure(bodies, residual); eps != 0)
+    p.notes.push_back(fmt::format(
+        "slip changes the pressure: speeds leave it out, and G at rest depends on the element size, by "
+        "{:.2g} % for one half as large",
+        100 * (std::exp2(2 * eps) - 1)));
+  if (const double factor = config.plate.element_size_m / given.plate.element_size_m; factor > 1.01) {
+    auto note =
         fmt::format("elements are {:.3g} times those of the case, {:.3g} m: what is shorter is smeared",
-                    factor, config.plate.element_size_m));
+                    factor, config.plate.element_size_m);
+    if (is_held(config))
+      note += fmt::format("; heights change by {:.2g} %, and G of a strip as much",
+                          100 * change_of_heights(given, config.plate.element_size_m));
+    p.notes.push_back(std::move(note));
+  }
   if (config.plate.sides == mesh::Sides::periodic)
     p.notes.emplace_back("periodic sides count as ends of the contact");
   if (config.friction.has_state() && by_law)
@@ -231,9 +331,7 @@ bool has_fracture_energy(const input::Case& config) {
   return config.friction.has_state() || interface::weakening_slip_m(config.friction);
 }
 
-FrontPredictor::FrontPredictor(const input::Case& given)
-    : given_(given),
-      config_(in_fewer_elements(given, is_held(given) ? most_of_sample : most_of_half_spaces)) {
+FrontPredictor::FrontPredictor(const input::Case& given) : given_(given), config_(in_fewer_elements(given)) {
   if (config_.loading.method == statics::LoadingMethod::ramp)
     config_.loading.method = statics::LoadingMethod::direct;
   initial_ = make_initial_state(config_, [](auto, auto) { return true; });
@@ -270,14 +368,29 @@ FracturePrediction FrontPredictor::predict(const TipFriction& friction, const st
     turned->p_per_slip *= -1;
   }
   const auto& response = turned ? *turned : *response_;
+  if (auto doubt = doubt_of_forced_patch(given_); !x_m && !doubt.empty())
+    throw UserError("no fronts to predict: {}; or give {}", doubt, for_caller("--x", "at_x_m"))
+        .about("nucleation.front_speed_m_per_s");
   const auto patch = first_crack(config_, initial_, x_m);
   p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
   p.nucleation_length_m =
       nucleation_length_m(laws, response, before, interface::follows_pressure(config_.regularisation),
-                          (patch.first + patch.last) / 2);
+                          p.covers_all || patch.first == 0 ? patch.first
+                          : patch.last + 1 == p.n_nodes    ? patch.last
+                                                           : (patch.first + patch.last) / 2);
   p.of_fronts =
       fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
-  add_notes(given_, config_, bodies, friction.fracture_energy_J_per_m2.empty(), given_before != nullptr, p);
+  const bool by_law = friction.fracture_energy_J_per_m2.empty();
+  add_notes(given_, config_, bodies, std::ranges::max(loads.residual_coefficient), by_law,
+            given_before != nullptr, p);
+  const auto& fronts = p.of_fronts.fronts;
+  auto of_speeds = doubt_of_speeds(bodies, p.of_fronts, median_strength_excess(laws, loads, fronts));
+  if (std::ranges::any_of(fronts, &fracture::PredictedFront::arrests))
+    p.doubts_of_arrest = doubts_of_arrest(config_, by_law, of_speeds);
+  if (!p.doubts_of_arrest.empty())
+    p.notes.push_back(fmt::format("no arrest is foretold: {}", fmt::join(p.doubts_of_arrest, "; ")));
+  else if (!of_speeds.empty())
+    p.notes.push_back(std::move(of_speeds));
   if (auto doubt = doubt_of_beginning(config_, initial_.common); given_before == nullptr && !doubt.empty())
     p.notes.push_back(std::move(doubt));
   return p;
@@ -290,7 +403,8 @@ FracturePrediction predict_fronts(const input::Case& config, const TipFriction& 
 
 std::optional<FracturePrediction> quick_prediction(const input::Case& config) {
   if (!input::is_prestressed(config) || is_held(config) || config.event == interface::EventKind::none ||
-      config.plate.sides == mesh::Sides::periodic || !has_fracture_energy(config))
+      config.plate.sides == mesh::Sides::periodic || !has_fracture_energy(config) ||
+      !doubt_of_forced_patch(config).empty())
     return {};
   return predict_fronts(config);
 }

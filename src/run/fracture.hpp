@@ -36,6 +36,11 @@ struct FracturePrediction {
   double nucleation_length_m = nan;
   std::string bodies;              ///< whose static response it is, in words
   std::vector<std::string> notes;  ///< what it leaves out, a line each
+  /// Why fronts may run on where they arrest by it; then no arrest is foretold.
+  std::vector<std::string> doubts_of_arrest;
+  bool foretells_arrest(const fracture::PredictedFront& front) const {
+    return front.arrests() && doubts_of_arrest.empty();
+  }
 };
 
 /// Where these take no statics and the law has a fracture energy: of prescribed tractions, the far edge not

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <future>
@@ -33,34 +35,36 @@ namespace {
 record::StaticState expected_tractions(const input::Case& config, const mesh::Mesh& mesh,
                                        const std::vector<interface::FrictionLaw>& laws) {
   if (is_prestressed(config)) return prescribed_tractions(config, mesh);
-  double least_mu = infinity;
-  for (const auto& law : laws) least_mu = std::min(least_mu, interface::static_coefficient(law));
   const double p_Pa = input::nominal_pressure_Pa(config);
-  return {interface_x_m(mesh), std::vector(laws.size(), least_mu * p_Pa), std::vector(laws.size(), p_Pa)};
+  double least_Pa = infinity;
+  for (const auto& law : laws) least_Pa = std::min(least_Pa, interface::static_strength_Pa(law, p_Pa));
+  return {interface_x_m(mesh), std::vector(laws.size(), least_Pa), std::vector(laws.size(), p_Pa)};
 }
 
 /// Nodes that a front can break: t is short of the strength by at most so many times the largest stress drop
-/// as a barrier is; all where t drops nowhere.
+/// as a barrier is; all where t drops nowhere, or under a law that never sticks.
 std::vector<std::size_t> nodes_that_can_slip(const input::Case& config, const mesh::Mesh& mesh,
                                              const std::vector<interface::FrictionLaw>& laws) {
   const auto s = expected_tractions(config, mesh, laws);
   double largest_drop_Pa = 0;
   for (std::size_t k = 0; k < laws.size(); ++k)
-    largest_drop_Pa = std::max(largest_drop_Pa,
-                               std::abs(s.t_s_Pa[k]) - interface::kinetic_coefficient(laws[k]) * s.p_s_Pa[k]);
+    largest_drop_Pa = std::max(largest_drop_Pa, std::abs(s.t_s_Pa[k]) - laws[k].cohesion_Pa() -
+                                                    interface::kinetic_coefficient(laws[k]) * s.p_s_Pa[k]);
   std::vector<std::size_t> nodes;
   for (std::size_t k = 0; k < laws.size(); ++k) {
-    const double short_Pa = interface::static_coefficient(laws[k]) * s.p_s_Pa[k] - std::abs(s.t_s_Pa[k]);
-    if (largest_drop_Pa <= 0 || short_Pa <= stability::barrier_S * largest_drop_Pa) nodes.push_back(k);
+    const double short_Pa = interface::static_strength_Pa(laws[k], s.p_s_Pa[k]) - std::abs(s.t_s_Pa[k]);
+    if (laws[k].has_state() || largest_drop_Pa <= 0 || short_Pa <= stability::barrier_S * largest_drop_Pa)
+      nodes.push_back(k);
   }
   return nodes;
 }
 
 /// Of some nodes those where one of the three numbers by which friction enters the growth of waves is least
-/// or largest.
+/// or largest; all under laws with a state, of which more numbers count, and whose growth is a closed form.
 std::set<std::size_t> extreme_nodes(const std::vector<std::size_t>& among,
                                     const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
                                     const interface::Regularisation& regularisation) {
+  if (laws.front().has_state()) return {among.begin(), among.end()};
   std::vector<stability::Sliding> sliding;
   for (const auto node : among)
     sliding.push_back(stability::uniform_sliding(laws[node], 0, pressure_Pa, regularisation));
@@ -74,31 +78,49 @@ std::set<std::size_t> extreme_nodes(const std::vector<std::size_t>& among,
   return nodes;
 }
 
-/// Of two verdicts the one with faster growth; where neither has a bound, by how far weakening is beyond it.
+/// Of two verdicts the one with faster growth; where neither has a bound or grows, by how far weakening is
+/// beyond it. None is worse by rounding alone, and no verdict comes last.
 bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness& b) {
-  return std::pair(a.fastest_growth_per_s, a.weakening_over_radiation) >
-         std::pair(b.fastest_growth_per_s, b.weakening_over_radiation);
+  constexpr double rounding = 1e-9;
+  const double of_a = a.fastest_growth_per_s, of_b = b.fastest_growth_per_s;
+  if (!a.has_verdict() || !b.has_verdict()) return a.has_verdict();
+  if (of_a > (1 + rounding) * of_b || of_b > (1 + rounding) * of_a) return of_a > of_b;
+  return a.weakening_over_radiation - b.weakening_over_radiation >
+         rounding * std::abs(b.weakening_over_radiation);
 }
 
-void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
+/// @return notes: of which friction nothing can be said
+std::vector<std::string> add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
   const double pressure_Pa = input::nominal_pressure_Pa(config);
-  const auto of = [&](const interface::FrictionLaw& law) {
-    return stability::well_posedness(bodies_of(config), law, pressure_Pa, config.plate.element_size_m,
-                                     config.plate.width_m, config.regularisation);
+  std::vector<std::string> notes;
+  auto& worst = info.well_posedness;
+  const auto consider = [&](const interface::FrictionLaw& law, double x_m) {
+    const auto here =
+        stability::well_posedness(bodies_of(config), law, pressure_Pa, config.plate.element_size_m,
+                                  config.plate.width_m, config.regularisation);
+    if (!here.has_verdict())
+      notes.push_back(fmt::format(
+          "uniform sliding{}: {}",
+          std::isnan(x_m) ? "" : fmt::format(" with the friction at x = {:.4g} m", x_m), here.statement));
+    if (!worst.statement.empty() && !is_worse(here, worst)) return;
+    worst = here;
+    info.well_posedness_x_m = x_m;
   };
   const auto x_m = interface_x_m(mesh);
   const auto laws = input::friction_at(config, x_m);
   if (laws.empty()) {
-    info.well_posedness = of(config.friction);
-    return;
+    consider(config.friction, nan);
+    return notes;
   }
   const auto can_slip = nodes_that_can_slip(config, mesh, laws);
-  for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, config.regularisation)) {
-    const auto here = of(laws[node]);
-    if (!std::isnan(info.well_posedness_x_m) && !is_worse(here, info.well_posedness)) continue;
-    info.well_posedness = here;
-    info.well_posedness_x_m = x_m[node];
+  if (can_slip.empty()) {
+    worst.fastest_growth_per_s = nan;
+    worst.statement = "no verdict: t is too far below the strength for any node to slip";
+    return {"uniform sliding: " + worst.statement};
   }
+  for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, config.regularisation))
+    consider(laws[node], x_m[node]);
+  return notes;
 }
 
 /// Bodies whose steps are timed: the whole ones, or some columns of them.
@@ -299,11 +321,11 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
 
   // About as long as making the stepper.
   auto sliding = std::async(std::launch::async | std::launch::deferred,
-                            [&] { add_well_posedness(config, meshes.plate, info); });
+                            [&] { return add_well_posedness(config, meshes.plate, info); });
   IsolatedSubdomain part;
   const auto timed =
       is_by_interface ? part_to_time(config, meshes, *n_processes, part) : whole_to_time(config, meshes);
-  sliding.get();
+  const auto notes_on_sliding = sliding.get();
   add_steps(timed, info);
   const double node_updates_per_step = timed.stepper->node_updates_per_step();
   add_needs(config, meshes, node_updates_per_step / timed.share, info);
@@ -320,6 +342,7 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
                     expected_rest_s(info) + expected_slow_s(info);
   info.notes = notes_of_case(config, info.rupture, info.step_s);
   if (!not_loaded.empty()) info.notes.push_back(not_loaded);
+  info.notes.insert(info.notes.end(), notes_on_sliding.begin(), notes_on_sliding.end());
   if (n_processes) info.shared = shared_by(config, meshes, timed, *n_processes, info);
   return info;
 }

@@ -36,19 +36,34 @@ struct Placed {
   stability::NodeBefore node;
 };
 
-/// Nodes in contact inside, t in the direction of the load.
-std::vector<Placed> nodes_inside(const input::Case& config, const statics::Equilibrium& state) {
+/// Nodes in contact inside, and words on them.
+struct Inside {
+  std::vector<Placed> placed;
+  double direction = 1;  ///< of the load along x, in which t of the nodes is
+  bool has_cohesion = false;
+
+  const char* t() const { return direction < 0 ? "-t" : "t"; }
+  std::string over_pressure(const char* coefficient) const {
+    return fmt::format("{}{} p", has_cohesion ? "cohesion_Pa + " : "", coefficient);
+  }
+  std::string strength() const { return over_pressure("mu_s"); }
+  std::int64_t size() const { return std::ssize(placed); }
+};
+
+Inside nodes_inside(const input::Case& config, const statics::Equilibrium& state) {
   const auto& s = state.tractions;
   const auto laws = input::friction_at(config, s.x_m);
   double load_Pa = 0;
   for (const double t : s.t_s_Pa) load_Pa += t;
-  const double direction = load_Pa < 0 ? -1 : 1;
-  std::vector<Placed> nodes;
-  for (std::size_t k = 0; k < s.x_m.size(); ++k)
-    if (state.is_inside(s.x_m[k]) && s.p_s_Pa[k] > 0)
-      nodes.push_back({s.x_m[k], node_before(laws.empty() ? config.friction : laws[k],
-                                             direction * s.t_s_Pa[k], s.p_s_Pa[k])});
-  return nodes;
+  Inside inside;
+  inside.direction = load_Pa < 0 ? -1 : 1;
+  for (std::size_t k = 0; k < s.x_m.size(); ++k) {
+    const auto& law = laws.empty() ? config.friction : laws[k];
+    if (!state.is_inside(s.x_m[k]) || !(s.p_s_Pa[k] > 0)) continue;
+    inside.placed.push_back({s.x_m[k], node_before(law, inside.direction * s.t_s_Pa[k], s.p_s_Pa[k])});
+    inside.has_cohesion = inside.has_cohesion || law.cohesion_Pa() > 0;
+  }
+  return inside;
 }
 
 std::optional<double> trigger_length_m(const input::Case& config) {
@@ -59,30 +74,31 @@ std::optional<double> trigger_length_m(const input::Case& config) {
 }
 
 /// The largest share of the strength that the patch's overstress brings t to.
-double overstressed_share(const input::Case& config, const std::vector<Placed>& nodes) {
+double overstressed_share(const input::Case& config, const Inside& inside) {
   const double period_m = config.plate.sides == mesh::Sides::periodic ? config.plate.width_m : 0;
   double most = 0;
-  for (const auto& [x_m, node] : nodes) {
-    const double added_Pa =
-        config.nucleation.overstress_Pa * interface::nucleation_profile(config.nucleation, x_m, period_m);
+  for (const auto& [x_m, node] : inside.placed) {
+    const double added_Pa = inside.direction * config.nucleation.overstress_Pa *
+                            interface::nucleation_profile(config.nucleation, x_m, period_m);
     most = std::max(most, std::abs(node.t_Pa + added_Pa) / node.strength_Pa);
   }
   return most;
 }
 
 /// None under a law that never sticks.
-std::int64_t n_beyond_strength(const std::vector<Placed>& nodes) {
-  return std::ranges::count_if(nodes, [](const Placed& placed) {
+std::int64_t n_beyond_strength(const Inside& inside) {
+  return std::ranges::count_if(inside.placed, [](const Placed& placed) {
     return !placed.node.state && placed.node.t_Pa > placed.node.strength_Pa;
   });
 }
 
 /// Empty, or that growing tractions come to the strength of no node before the end.
-std::string doubt_of_growing_loads(const input::Case& config, const std::vector<Placed>& nodes) {
-  const double t_rate = config.prestress.t_rate_Pa_per_s, p_rate = config.prestress.p_rate_Pa_per_s;
+std::string doubt_of_growing_loads(const input::Case& config, const Inside& inside) {
+  const double t_rate = inside.direction * config.prestress.t_rate_Pa_per_s;
+  const double p_rate = config.prestress.p_rate_Pa_per_s;
   const bool follows_p = interface::follows_pressure(config.regularisation);
   double first_s = infinity;
-  for (const auto& [x_m, node] : nodes) {
+  for (const auto& [x_m, node] : inside.placed) {
     const double strength_rate = follows_p ? node.strength_Pa / node.p_Pa * p_rate : 0;
     for (const double direction : {1.0, -1.0}) {
       const double nearer_per_s = direction * t_rate - strength_rate;
@@ -98,23 +114,37 @@ std::string doubt_of_growing_loads(const input::Case& config, const std::vector<
                                 : "tractions grow away from the strength at all nodes inside";
 }
 
+/// Empty, or why an overstress begins nothing, or nothing that the load drives on.
+std::string doubt_of_overstress(const input::Case& config, const Inside& inside) {
+  const double overstress_Pa = config.nucleation.overstress_Pa, share = overstressed_share(config, inside);
+  const bool is_against = inside.direction * overstress_Pa < 0 &&
+                          std::ranges::any_of(inside.placed, [](const Placed& p) { return p.node.t_Pa > 0; });
+  if (share < 1)
+    return fmt::format("nucleation.overstress_Pa = {:g}{} brings {} to no more than {:.3g} of {}",
+                       overstress_Pa, is_against ? ", which acts against t," : "", inside.t(), share,
+                       inside.strength());
+  if (!is_against) return {};
+  return fmt::format(
+      "nucleation.overstress_Pa = {:g} acts against t: slip begins against the load, which does not drive it "
+      "on",
+      overstress_Pa);
+}
+
 /// Empty, or why the event does not begin.
-std::string doubt_of_beginning(const input::Case& config, const std::vector<Placed>& nodes) {
-  const auto n_beyond = n_beyond_strength(nodes);
-  if (2 * n_beyond > std::ssize(nodes))
-    return fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once, without a front",
-                       n_beyond, nodes.size());
-  if (nodes.empty() || n_beyond > 0 || nodes.front().node.state) return {};
-  if (has_growing_tractions(config)) return doubt_of_growing_loads(config, nodes);
-  if (config.event == EventKind::none) return "event.kind = none, and t is below mu_s p at all nodes inside";
+std::string doubt_of_beginning(const input::Case& config, const Inside& inside) {
+  const auto n_beyond = n_beyond_strength(inside);
+  if (2 * n_beyond > inside.size())
+    return fmt::format("{} is beyond {} at {} of {} nodes inside: they slip at once, without a front",
+                       inside.t(), inside.strength(), n_beyond, inside.size());
+  if (inside.placed.empty() || n_beyond > 0 || inside.placed.front().node.state) return {};
+  if (has_growing_tractions(config)) return doubt_of_growing_loads(config, inside);
+  if (config.event == EventKind::none)
+    return fmt::format("event.kind = none, and {} is below {} at all nodes inside", inside.t(),
+                       inside.strength());
   if (input::is_pushed_at_edge(config) && config.trigger.amount < 1)
-    return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below mu_s p",
-                       config.trigger.amount);
-  if (!input::is_overstressed(config)) return {};
-  const double share = overstressed_share(config, nodes);
-  if (share >= 1) return {};
-  return fmt::format("nucleation.overstress_Pa = {:g} brings t to no more than {:.3g} of mu_s p",
-                     config.nucleation.overstress_Pa, share);
+    return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below {}",
+                       config.trigger.amount, inside.strength());
+  return input::is_overstressed(config) ? doubt_of_overstress(config, inside) : std::string();
 }
 
 /// Empty, or that slip stops for want of length.
@@ -145,11 +175,14 @@ std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) 
 }
 
 /// Why slip that has begun stops.
-std::vector<std::string> doubts_of_growth(const input::Case& config, const RuptureOutlook& o) {
+std::vector<std::string> doubts_of_growth(const input::Case& config, const Inside& inside,
+                                          const RuptureOutlook& o) {
   const auto& of = o.of_nodes;
   if (of.n_weakening == 0) return {"friction does not weaken at any node: no rupture feeds itself"};
   if (of.n_driven == 0)
-    return {"the residual strength mu_k p is nowhere below t: a rupture finds no energy beyond its trigger"};
+    return {fmt::format(
+        "the residual strength {} is nowhere below {}: a rupture finds no energy beyond its trigger",
+        inside.over_pressure("mu_k"), inside.t())};
   std::vector<std::string> doubts;
   if (of.n_barriers == of.n_nodes)
     doubts.emplace_back("S is beyond 10 at all nodes: no front breaks such strength");
@@ -201,6 +234,20 @@ void add_cautions(const input::Case& config, RuptureOutlook& o) {
                                : "a smaller stiffness_damping_s"));
 }
 
+/// How far the place holds where fronts pass c_S, which is that of a nucleation of the critical length.
+void add_to_regime(const input::Case& config, RuptureOutlook& o) {
+  auto& of = o.of_nodes;
+  if (!of.supershear_half_length_m || !std::isfinite(*of.supershear_half_length_m)) return;
+  constexpr double longer = 1.1;
+  const double triggers = o.trigger_length_m.value_or(0) / (2 * *of.griffith_half_length_m) *
+                          (interface::is_at_edge(config.event) ? 2 : 1);
+  if (triggers > longer)
+    of.regime += fmt::format(
+        "; the trigger has {:.2g} times the critical length: no formula tells by how much sooner", triggers);
+  else if (*of.supershear_half_length_m > config.plate.width_m && stability::are_alike(bodies_of(config)))
+    of.regime += "; that is beyond the interface";
+}
+
 /// Where friction weakens with the rate of steady sliding, in words. @param x_m  of the interface nodes
 std::string weakening_along_x(const input::Case& config, const std::vector<double>& x_m,
                               double speed_m_per_s) {
@@ -235,10 +282,9 @@ std::string steady_sliding(const input::Case& config, const std::vector<double>&
   return slow == fast ? slow : fmt::format("{}; at 1 m/s {}", slow, fast);
 }
 
-RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed,
-                          const std::vector<double>& x_m) {
+RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const std::vector<double>& x_m) {
   std::vector<stability::NodeBefore> nodes;
-  for (const auto& p : placed) nodes.push_back(p.node);
+  for (const auto& p : inside.placed) nodes.push_back(p.node);
   RuptureOutlook o;
   o.of_nodes = stability::outlook(bodies_of(config), nodes);
   o.trigger_length_m = trigger_length_m(config);
@@ -247,19 +293,19 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   o.cracks = quick_prediction(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
-  if (const auto half_m = o.of_nodes.supershear_half_length_m;
-      half_m && *half_m > config.plate.width_m && stability::are_alike(bodies_of(config)))
-    o.of_nodes.regime += "; that is beyond the interface";
+  add_to_regime(config, o);
   add_cautions(config, o);
-  if (const auto n_beyond = n_beyond_strength(placed); n_beyond > 0 && 2 * n_beyond <= std::ssize(placed))
-    o.cautions.push_back(fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once",
-                                     n_beyond, placed.size()));
+  if (const auto n_beyond = n_beyond_strength(inside); n_beyond > 0 && 2 * n_beyond <= inside.size())
+    o.cautions.push_back(fmt::format("{} is beyond {} at {} of {} nodes inside: they slip at once",
+                                     inside.t(), inside.strength(), n_beyond, inside.size()));
   return o;
 }
 
-void add_doubts(const input::Case& config, const std::vector<Placed>& placed, RuptureOutlook& o) {
-  if (auto doubt = doubt_of_beginning(config, placed); !doubt.empty()) o.doubts.push_back(std::move(doubt));
-  for (auto& doubt : doubts_of_growth(config, o)) o.doubts.push_back(std::move(doubt));
+/// Of tractions that are known.
+void add_doubts(const input::Case& config, const Inside& inside, RuptureOutlook& o) {
+  for (auto doubt : {doubt_of_beginning(config, inside), doubt_of_forced_patch(config)})
+    if (!doubt.empty()) o.doubts.push_back(std::move(doubt));
+  for (auto& doubt : doubts_of_growth(config, inside, o)) o.doubts.push_back(std::move(doubt));
 }
 
 }  // namespace
@@ -268,11 +314,22 @@ std::string doubt_of_beginning(const input::Case& config, const statics::Equilib
   return doubt_of_beginning(config, nodes_inside(config, before));
 }
 
+std::string doubt_of_forced_patch(const input::Case& config) {
+  const auto& n = config.nucleation;
+  if (!input::is_forced(config)) return {};
+  const double whole_s = n.half_length_m / n.front_speed_m_per_s + n.weakening_time_s;
+  if (whole_s <= config.time.end_s) return {};
+  return fmt::format(
+      "nucleation.front_speed_m_per_s = {:g}: the forced patch is not of nucleation.half_length_m = {:g} m "
+      "before {:.3g} s, time.end_s is {:.3g} s; is the speed in m/s?",
+      n.front_speed_m_per_s, n.half_length_m, whole_s, config.time.end_s);
+}
+
 RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
                                std::span<const double> tributary_m) {
-  const auto placed = nodes_inside(config, before);
-  auto o = outlook_of(config, placed, before.tractions.x_m);
-  add_doubts(config, placed, o);
+  const auto inside = nodes_inside(config, before);
+  auto o = outlook_of(config, inside, before.tractions.x_m);
+  add_doubts(config, inside, o);
   if (auto caution = caution_of_trigger(config, before, tributary_m); !caution.empty())
     o.cautions.push_back(std::move(caution));
   return o;
@@ -285,14 +342,17 @@ RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) 
                            mesh::tributary_lengths_m(meshes.plate));
   const double p_Pa = input::nominal_pressure_Pa(config);
   const double strength_Pa = interface::static_strength_Pa(config.friction, p_Pa);
-  auto o =
-      outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}}, interface_x_m(meshes.plate));
+  Inside inside;
+  inside.placed = {{0, node_before(config.friction, strength_Pa, p_Pa)}};
+  inside.has_cohesion = config.friction.cohesion_Pa() > 0;
+  auto o = outlook_of(config, inside, interface_x_m(meshes.plate));
   o.nominal = true;
   // S, and what follows from it, take the tractions along the interface.
   o.of_nodes.S = o.of_nodes.drop_ratio = {nan, nan, nan};
   o.of_nodes.supershear_half_length_m.reset();
   o.of_nodes.regime = "unknown before the statics give the tractions along the interface";
-  o.doubts = doubts_of_growth(config, o);
+  if (auto doubt = doubt_of_forced_patch(config); !doubt.empty()) o.doubts.push_back(std::move(doubt));
+  for (auto& doubt : doubts_of_growth(config, inside, o)) o.doubts.push_back(std::move(doubt));
   return o;
 }
 

@@ -45,6 +45,8 @@ inline constexpr double harmless_damping = 0.02;
 
 /// Why the event does not begin in this state, or begins everywhere at once; empty where it begins.
 std::string doubt_of_beginning(const input::Case& config, const statics::Equilibrium& before);
+/// That a forced patch has not its length before the end; empty where it has, or there is none.
+std::string doubt_of_forced_patch(const input::Case& config);
 
 /// Of a case whose state before the event is known.
 /// @param tributary_m  [interface nodes]

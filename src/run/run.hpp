@@ -189,7 +189,7 @@ struct Info {
   double node_updates_per_s = 0;  ///< measured on the spot
   RuptureOutlook rupture;
   std::optional<MeshChoice> cheapest_mesh;
-  stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
+  stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure; see its has_verdict
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = nan;
   std::optional<Shared> shared;

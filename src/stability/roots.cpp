@@ -6,8 +6,6 @@
 #include <numbers>
 #include <optional>
 
-#include "base/error.hpp"
-
 namespace slipfront::stability {
 namespace {
 
@@ -72,7 +70,7 @@ class Finder {
       find(second, n - *n_first, zeros);
       return;
     }
-    SLIPFRONT_ASSERT(false, "zeros cannot be told apart: is the function analytic in the sector?");
+    throw Inseparable();
   }
 
   std::optional<Complex> newton(Complex z) const {
@@ -152,7 +150,7 @@ std::vector<Complex> zeros_by_argument_principle(const Function& f, const Sector
     n = finder.count(whole(tried));
     if (n) break;
   }
-  SLIPFRONT_ASSERT(n.has_value(), "the function vanishes on every border tried");
+  if (!n || *n < 0) throw Inseparable();
   const Cell cell = whole(tried);
   std::vector<Complex> zeros;
   for (const Complex p : expected)

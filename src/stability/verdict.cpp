@@ -150,12 +150,27 @@ WellPosedness well_posedness_of_state(const Bodies& bodies, WellPosedness w) {
   return w;
 }
 
+/// Of a law without a state. @throws Inseparable
+void add_growth(const Bodies& bodies, double element_size_m, WellPosedness& w) {
+  constexpr double pi = std::numbers::pi;
+  w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);
+  w.unbounded = growth_is_unbounded(bodies, w.sliding);
+  if (w.unbounded) {
+    w.fastest_growth_per_s = infinity;
+  } else {
+    // Four decades beyond the mesh: there damping or delay has long decided.
+    const auto peak =
+        fastest_between(bodies, w.sliding, 2 * pi / w.longest_wavelength_m, 1e4 * pi / element_size_m);
+    w.fastest_growth_per_s = peak.growth_per_s;
+    if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
+  }
+}
+
 }  // namespace
 
 WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw& law, double pressure_Pa,
                              double element_size_m, double longest_wavelength_m,
                              const interface::Regularisation& regularisation) {
-  constexpr double pi = std::numbers::pi;
   const auto& other = bodies.below ? *bodies.below : bodies.above;
   const double fastest_speed_m_per_s =
       std::max(solid::longitudinal_speed_m_per_s(bodies.above), solid::longitudinal_speed_m_per_s(other));
@@ -168,16 +183,12 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
   w.weakening_over_radiation =
       0 - w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);
   if (w.sliding.state_rate_per_s > 0) return well_posedness_of_state(bodies, w);
-  w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);
-  w.unbounded = growth_is_unbounded(bodies, w.sliding);
-  if (w.unbounded) {
-    w.fastest_growth_per_s = infinity;
-  } else {
-    // Four decades beyond the mesh: there damping or delay has long decided.
-    const auto peak =
-        fastest_between(bodies, w.sliding, 2 * pi / w.longest_wavelength_m, 1e4 * pi / element_size_m);
-    w.fastest_growth_per_s = peak.growth_per_s;
-    if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
+  try {
+    add_growth(bodies, element_size_m, w);
+  } catch (const Inseparable& why) {
+    w.growth_at_grid_per_s = w.fastest_growth_per_s = nan;
+    w.statement = fmt::format("no verdict: {}", why.what());
+    return w;
   }
   w.growth_in_crossing = w.fastest_growth_per_s * element_size_m / fastest_speed_m_per_s;
   w.statement = statement_of(w, !are_alike(bodies));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "stability/modes.hpp"
@@ -12,7 +13,7 @@ namespace slipfront::stability {
 struct WellPosedness {
   Sliding sliding;                  ///< in the limit of slow sliding
   double grid_wavelength_m = 0;     ///< 2 h, the shortest that the mesh carries
-  double growth_at_grid_per_s = 0;  ///< of the fastest mode there, 0 where none grows
+  double growth_at_grid_per_s = 0;  ///< of the fastest mode there, 0 where none grows; see has_verdict
   bool unbounded = false;           ///< growth has no bound as the wavelength goes to zero: ill-posed
   /// -mu'(0) p over the radiation damping; above 1 strength drops at once on slip.
   double weakening_over_radiation = 0;
@@ -26,6 +27,8 @@ struct WellPosedness {
   double damping_length_m = 0;  ///< beta_R c_L: much shorter waves are overdamped
   double damping_length_over_h = 0;
   std::string statement;  ///< one plain line
+  /// False where rounding hides which waves grow: growth is not a number then.
+  bool has_verdict() const { return !std::isnan(fastest_growth_per_s); }
 };
 
 /// @param longest_wavelength_m such as the length of the interface.

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "base/error.hpp"
+#include "statics/indefinite.hpp"
 
 namespace slipfront::statics {
 
@@ -31,7 +31,7 @@ CondensedInterface::CondensedInterface(std::shared_ptr<const Factorisation> plat
   const auto& S_a = plate_->condensed_stiffness();
   const Eigen::MatrixXd P = mirrored(base_->condensed_stiffness());
   M_.compute(S_a + P);
-  SLIPFRONT_ASSERT(M_.info() == Eigen::Success, "the stiffness of plate and base is not positive definite");
+  if (M_.info() != Eigen::Success) throw Indefinite();
   const Eigen::MatrixXd product = S_a * M_.solve(P);
   S_ = 0.5 * (product + product.transpose());  // symmetric but for rounding
 }

@@ -12,6 +12,7 @@
 #include "base/numbers.hpp"
 #include "solid/element.hpp"
 #include "statics/dissection.hpp"
+#include "statics/indefinite.hpp"
 
 namespace slipfront::statics {
 
@@ -122,7 +123,7 @@ void Factorisation::factorise(const solid::Material& material) {
   Eigen::VectorXd springs = Eigen::VectorXd::Zero(2 * mesh_.interface_nodes.size());
   for (Eigen::Index k = 0; k < springs.size(); ++k) springs(k) = spring_[k % 2];
   auto condensed = factor_->factorise(stiffness_of, springs);
-  SLIPFRONT_ASSERT(condensed, "stiffness is not positive definite");
+  if (!condensed) throw Indefinite();
   condensed_ = std::move(*condensed);
   return_freed_memory();
 }

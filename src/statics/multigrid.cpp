@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/lanes.hpp"
 #include "base/random.hpp"
+#include "statics/indefinite.hpp"
 
 namespace slipfront::statics {
 
@@ -594,7 +595,7 @@ void Multigrid::factorise_coarsest() {
                                                 : std::min(grid.stencil.centre, grid.stencil_below.centre);
   coarsest_.setShift(1e-9 * softer);
   coarsest_.compute(K);
-  SLIPFRONT_ASSERT(coarsest_.info() == Eigen::Success, "the coarsest level is not positive definite");
+  if (coarsest_.info() != Eigen::Success) throw Indefinite();
   coarsest_b_.resize(n_unknowns);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "statics/prestress.hpp"
 
+#include <numeric>
 #include <utility>
 
 namespace slipfront::statics {
@@ -17,9 +18,11 @@ Equilibrium prestressed(const mesh::Mesh& mesh, record::StaticState tractions, c
   e.inside_from_m = e.tractions.x_m.front();
   e.inside_to_m = e.tractions.x_m.back();
   e.peak_x_m = e.inside_from_m;
+  const auto& t_Pa = e.tractions.t_s_Pa;
+  const double direction = std::reduce(t_Pa.begin(), t_Pa.end()) < 0 ? -1 : 1;  // of the load
   for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
-    const double ratio = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
-    if (ratio <= e.peak_ratio) continue;
+    const double ratio = t_Pa[k] / e.tractions.p_s_Pa[k];
+    if (direction * ratio <= direction * e.peak_ratio) continue;
     e.peak_ratio = ratio;
     e.peak_x_m = e.tractions.x_m[k];
   }

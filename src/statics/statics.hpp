@@ -38,7 +38,7 @@ struct Equilibrium {
   double shear_m = 0;  ///< displacement of what loads along x since the tilt: the edge, or the machine
   std::vector<Contact> contact;               ///< [interface nodes]
   record::StaticState tractions;              ///< [interface nodes]
-  double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside
+  double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside, along the load
   double peak_x_m = 0;                        ///< where that is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
   bool is_inside(double x_m) const { return x_m >= inside_from_m && x_m <= inside_to_m; }

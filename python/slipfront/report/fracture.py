@@ -46,7 +46,8 @@ def prediction(run: Run, x_unit: Unit) -> tuple[dict[str, Any] | None, str]:
     def curve(name: str, factor: float) -> list[float | None]:
         return listed(np.insert(found[name].to_numpy(), gaps, np.nan), factor)
 
-    arrests_m = [float(found["x_m"][directions == way][-1]) for way in told["arrests"]]
+    arrests = [] if told["doubts_of_arrest"] else told["arrests"]
+    arrests_m = [float(found["x_m"][directions == way][-1]) for way in arrests]
     first = f"a first crack of {place(told['first_length_m'])}"
     if told["starts"]:
         start = f"{first} runs"

@@ -56,11 +56,12 @@ struct FrictionTableLaw {
     return std::ranges::adjacent_find(mu, std::less()) != mu.end();
   }
 
-  /// Twice what mu exceeds its least by, over the slip, through the whole drop.
+  /// Twice what mu exceeds its least by, over the slip until it is least, through the whole drop.
   double weakening_slip_m() const requires over_slip {
-    const double least = std::ranges::min(mu);
+    const auto least_at = static_cast<std::size_t>(std::ranges::min_element(mu) - mu.begin());
+    const double least = mu[least_at];
     double area_m = 0;
-    for (std::size_t k = 0; k + 1 < at.size(); ++k)
+    for (std::size_t k = 0; k < least_at; ++k)
       area_m += (0.5 * (mu[k] + mu[k + 1]) - least) * (at[k + 1] - at[k]);
     return mu.front() > least ? 2 * area_m / (mu.front() - least) : at.back();
   }
