@@ -30,7 +30,7 @@ PROGRAM := $(BUILD)/slipfront
 # Whether warnings are errors: ON in continuous integration, whose compilers are known.
 WERROR ?= OFF
 
-.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz fuzz-cases sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -282,6 +282,9 @@ fuzz: packages  ## files that are made up, for every reader of files, FUZZ_SECON
 	cmake --preset asan
 	cmake --build --preset asan --target fuzzers
 	@scripts/run-fuzzers build/asan $(FUZZ_SECONDS)
+
+fuzz-cases: ready  ## random cases of all keys for validate, info, fracture and run; SEED=, CASES= to repeat some
+	$(PYTHON) tests/fuzz/cases.py $(PROGRAM) --keep build/fuzz-cases $(if $(SEED),--seed $(SEED)) $(if $(CASES),--cases $(CASES))
 
 coverage: packages  ## lines of the numerical core that the C++ tests run: table, and page build/coverage/index.html
 	@scripts/install-packages $(COVERAGE_PACKAGES)
