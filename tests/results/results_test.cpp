@@ -193,6 +193,7 @@ TEST_F(TextFiles, HoldFiniteNumbersAndEmptyFieldsWhereTheyMayBeMissing) {
   }
   record::SequenceEvent event;
   write_events(folder_ / "events.csv", std::vector{event});  // begin_x_m and others are not known
+  EXPECT_TRUE(std::filesystem::remove(folder_ / "events.csv"));
   event.begin_x_m = infinity;
   is_refused("events.csv", "begin_x_m",
              [&](Numbers numbers) { write_events(folder_ / "events.csv", std::vector{event}, numbers); });
