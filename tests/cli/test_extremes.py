@@ -117,3 +117,34 @@ def test_a_forced_patch_that_comes_too_late_is_told(program):
     in_time = require_done(program("fracture", case, *sets("nucleation.front_speed_m_per_s=500"))).stdout
     assert "front to +x" in in_time
     assert "front to +x" in require_done(program("fracture", case, "--x", "0.1")).stdout
+
+
+def test_laws_with_a_state_borrow_nothing_from_others(program, write_case):
+    case = write_case(
+        '[plate]\nelement_size_m = 4e-3\nheight_m = 0.04\ncorner = "none"\nsides = "absorbing"\n[loading]\n'
+        'method = "prestress"\n[prestress]\np_Pa = 5e6\n[event]\nkind = "nucleation"\n[base]\n'
+        'kind = "body"\nheight_m = 0.04\nyoungs_modulus_Pa = 2.6e9\npoissons_ratio = 0.37\n'
+        'density_kg_per_m3 = 1200\n[nucleation]\nform = "overstress"\n[friction]\nd_c_m = 2e-6\n'
+    )
+    printed = {}
+    for law in ("aging", "slip"):
+        printed[law] = require_done(program("info", case, *sets(f"friction.law=rate_and_state_{law}"))).stdout
+        assert "S < 1.77" not in printed[law]
+    assert "Rubin, Ampuero 2005" in line_of(printed["aging"], "nucleation length")
+    assert line_of(printed["slip"], "nucleation length").startswith("unknown")
+
+
+def test_a_trigger_longer_than_the_critical_crack_has_no_place_where_fronts_pass_c_S(program):
+    case = CASES / "damping_supershear.toml"
+    for half_length, is_longer in (("3e-3", False), ("20e-3", True)):
+        printed = require_done(program("info", case, *sets(f"nucleation.half_length_m={half_length}"))).stdout
+        assert ("times the critical length: no formula" in line_of(printed, "expected regime")) == is_longer
+
+
+def test_a_fracture_energy_of_the_mesh_is_called_so(program, coarse, write_case):
+    said = "(of this mesh: the law has no length)"
+    trigger = sets("event.kind=left")
+    assert said in require_done(program("run", coarse, "-o", "out", *trigger)).stdout
+    slip = sets("friction.law=slip_weakening", "event.kind=left", "friction.d_c_m=4e-5")
+    printed = require_done(program("run", coarse, "-o", "of_slip", *slip)).stdout
+    assert said not in printed

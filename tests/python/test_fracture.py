@@ -668,3 +668,20 @@ def test_nucleation_length_of_an_edge_is_of_a_patch_from_it():
         for zone_m in (5e-3, 20e-3)
     ]
     assert lengths[0] == lengths[1]
+
+
+def test_a_history_of_a_run_gives_the_same_as_the_run():
+    """Where the cohesive zone is 4 mm long, at the place of the case's probes."""
+    case = ROOT / "tests/cli/cases/probe_within_cohesive_zone.toml"
+    coarse = {"plate.element_size_m": 1e-3, "output.history_interval_s": 0.2e-6}
+    run = slipfront.run(case, coarse, progress=False)
+    found = slipfront.fracture_of_history(run.history, run.fronts, run)
+    own = run.fracture
+    near = ((abs(own.x_m - 0.3) < 0.02) & (own.breakdown_complete == 1)).to_numpy()
+    assert near.sum() > 30
+    # Trapezoids over 20 samples of the breakdown.
+    np.testing.assert_allclose(
+        found.breakdown_work_J_per_m2[near], own.breakdown_work_J_per_m2[near], rtol=0.01
+    )
+    np.testing.assert_allclose(own.breakdown_work_J_per_m2[near], 0.5 * 0.3 * 5e6 * 8e-6, rtol=1e-3)
+    assert 3.5e-3 < float(own.cohesive_zone_m[near].median()) < 5e-3
