@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,24 @@ import xarray as xr
 from slipfront.errors import CaseError
 from slipfront.files import DataError, one_line, read_table
 from slipfront.given import array, flag, in_order, instance, number, path, table, text
-from slipfront.onsets import LENGTHS, PRESSURES, QUANTITIES, TIMES, columns_of, in_si, name_and_unit
+from slipfront.onsets import (
+    LENGTHS,
+    PRESSURES,
+    QUANTITIES,
+    TIMES,
+    columns_of,
+    in_si,
+    name_and_unit,
+    numbers_of,
+)
 from slipfront.opened import OpenRun
 from slipfront.read import require
 
 COMPONENTS = ("xx", "yy", "xy")
-STRAINS = {"": 1.0, "strain": 1.0, "ustrain": 1e-6, "microstrain": 1e-6, "mstrain": 1e-3}
+STRAINS = {"": 1.0, "strain": 1.0, "ustrain": 1e-6, "microstrain": 1e-6, "mstrain": 1e-3, "percent": 1e-2}
+#: A smooth top that a converter shows as k equal samples falls by at most (1 + 2/k)^2 of a digit within
+#: the next sample, and one of rounding: from 3 samples on below 4 digits. What falls faster was cut off.
+TOP_SAMPLES, TOP_DIGITS = 3, 4
 LEAST_SHARED = 0.5  # of the shorter of record and run
 GAUGE_NAMES = ("gauge", "name", "probe", "station")
 WANTED = (
@@ -34,7 +46,11 @@ WANTED = (
 
 @dataclass(frozen=True)
 class Gauge:
-    """What was recorded at a place: some of the components xx, yy, xy of strain, or of stress in Pa."""
+    """What was recorded at a place: some of the components xx, yy, xy of strain, or of stress in Pa; or
+    strain along the arms of a rosette, named by their angles from +x towards +y in degrees, such as "-45".
+
+    places_m: x and y of those that are at a place of their own. A time at which a value is NaN is left out,
+    and so is a component that is NaN throughout."""
 
     name: str
     x_m: float
@@ -43,6 +59,10 @@ class Gauge:
     values: Mapping[str, np.ndarray]
     is_strain: bool = True
     smoothing_s: float = 0.0  # standard deviation of the filter that the record has passed
+    places_m: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    doubts: tuple[str, ...] = ()  # of the record; they follow each fit to it
+    #: First and last times of flat tops: the record was cut off there, before any filter.
+    flat_s: tuple[tuple[float, float], ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         of = f"gauge {text(self.name, 'the name of a gauge')}: "
@@ -51,18 +71,44 @@ class Gauge:
         number(self.smoothing_s, f"{of}smoothing_s", least=0, finite=True)
         flag(self.is_strain, f"{of}is_strain")
         values = table(self.values, f"{of}values")
-        if not values or any(name not in COMPONENTS for name in values):
-            raise CaseError(f"{of}its components are {list(values)}; take some of xx, yy, xy")
+        if not values or any(weights(name) is None for name in values):
+            raise CaseError(
+                f"{of}its components are {list(values)}; take some of xx, yy, xy, or angles of arms in deg"
+            )
         if not np.isfinite([self.x_m, self.y_m]).all() or self.y_m == 0:
             raise CaseError(f"{of}is at x = {self.x_m}, y = {self.y_m} m; y must be finite and not 0")
         time_s = array(self.time_s, f"{of}time_s")
         made = {name: array(v, f"{of}values['{name}']") for name, v in values.items()}
-        if any(a.shape != time_s.shape or not np.isfinite(a).all() for a in (time_s, *made.values())):
+        if any(a.shape != time_s.shape or np.isinf(a).any() for a in (time_s, *made.values())):
             raise CaseError(f"{of}times and values must be finite arrays of one length")
+        made = {name: a for name, a in made.items() if not np.isnan(a).all()}
+        if not made:
+            raise CaseError(f"{of}has no values: leave it out")
+        known = ~np.isnan([time_s, *made.values()]).any(axis=0)
+        time_s, made = time_s[known], {name: a[known] for name, a in made.items()}
         if len(time_s) < 2 or not (np.diff(time_s) > 0).all():
             raise CaseError(f"{of}needs two times or more that ascend")
+        places = {name: tuple(map(float, array(p, f"{of}places_m['{name}']", finite=True)))
+                  for name, p in table(self.places_m, f"{of}places_m").items()}  # fmt: skip
+        if not set(places) <= set(values) or any(
+            len(p) != 2 or p[1] * self.y_m <= 0 for p in places.values()
+        ):
+            raise CaseError(f"{of}places_m must hold x and y of its components, on its side of the interface")
         object.__setattr__(self, "time_s", time_s)
         object.__setattr__(self, "values", made)
+        object.__setattr__(self, "places_m", places)
+        object.__setattr__(self, "flat_s", tuple(f for v in made.values() for f in flat_tops(time_s, v)))
+
+    @property
+    def parts(self) -> list[str]:
+        """Its components in their order, or its arms."""
+        return [p for p in COMPONENTS if p in self.values] or list(self.values)
+
+    def changed(self, flat_s: Iterable[tuple[float, float]], **fields: Any) -> Gauge:
+        """With other fields; flat tops are no longer seen in values that were worked on."""
+        made = replace(self, **fields)
+        object.__setattr__(made, "flat_s", tuple(flat_s))
+        return made
 
     def prepared(
         self,
@@ -98,12 +144,43 @@ class Gauge:
         if window_s is not None:
             inside = between(time_s, window_s, f"gauge {self.name}: window_s")
             time_s, values = time_s[inside], {name: v[inside] for name, v in values.items()}
-        return replace(self, time_s=time_s, values=values, smoothing_s=smoothing_s)
+        flat_s = [(first + shift_s, last + shift_s) for first, last in self.flat_s]
+        return self.changed(flat_s, time_s=time_s, values=values, smoothing_s=smoothing_s)
 
     def peak(self, part: str) -> float:
         """The largest departure of a component from its median."""
         values = self.values[part]
         return float(np.abs(values - np.median(values)).max())
+
+
+def weights(part: str) -> np.ndarray | None:
+    """Of xx, yy and xy in a component, or in the strain along an arm; None: it is neither."""
+    if part in COMPONENTS:
+        return np.eye(3)[COMPONENTS.index(part)]
+    try:
+        angle = np.radians(float(part))
+    except (TypeError, ValueError):
+        return None
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([c * c, s * s, 2 * s * c])
+
+
+def flat_tops(time_s: np.ndarray, values: np.ndarray) -> list[tuple[float, float]]:
+    """Where a record stays at its largest or smallest value, and comes and goes faster than a smooth top."""
+    known = ~np.isnan(values)
+    time_s, values = time_s[known], values[known]
+    steps = np.abs(np.diff(values))
+    if not steps.any():
+        return []
+    digit, found = steps[steps > 0].min(), []
+    for top in (values.max(), values.min()):
+        ends = np.flatnonzero(np.diff(np.pad((values == top).astype(int), 1)))
+        for first, end in zip(ends[::2], ends[1::2], strict=True):
+            beside = [steps[first - 1]] if first > 0 else []  # a record may begin at rest
+            beside += [steps[end - 1]] if beside and end < len(values) else []
+            if end - first >= TOP_SAMPLES and min(beside, default=0) > TOP_DIGITS * digit:
+                found.append((float(time_s[first]), float(time_s[end - 1])))
+    return found
 
 
 def between(time_s: np.ndarray, ends_s: tuple[float, float], name: str) -> np.ndarray:
@@ -144,9 +221,7 @@ def filtered(
 
 def from_arms(arms: Mapping[float, np.ndarray]) -> dict[str, np.ndarray]:
     """Strain in the plane of three arms, by their angles from +x towards +y in degrees."""
-    angles = np.radians(list(arms))
-    c, s = np.cos(angles), np.sin(angles)
-    turned = np.array([c * c, s * s, 2 * s * c]).T
+    turned = np.array([weights(f"{angle:.9g}") for angle in arms])
     if abs(np.linalg.det(turned)) < 1e-3:
         raise CaseError(f"arms at {', '.join(f'{a:g}' for a in arms)} degrees do not determine the strain")
     return dict(zip(COMPONENTS, np.linalg.solve(turned, np.array(list(arms.values()))), strict=True))
@@ -165,14 +240,18 @@ def quantities(names: list[str]) -> dict[str, tuple[tuple[str, ...], dict[str, f
         found[f"stress_{part}"] = (f"stress_{part}", f"sigma_{part}"), PRESSURES
     for name in names:
         for bare in (name_and_unit(name)[0], name.strip().lower()):
-            if arm := re.fullmatch(r"(?:strain|eps|epsilon)_([+-]?\d+(?:\.\d+)?)(?:_?deg)?", bare):
-                found[f"arm {float(arm[1]):g}"] = (bare,), STRAINS
+            if arm := re.fullmatch(r"(strain|eps|epsilon|x|y)_([+-]?\d+(?:\.\d+)?)(?:_?deg)?", bare):
+                of, units = (arm[1], LENGTHS) if arm[1] in ("x", "y") else ("arm", STRAINS)
+                found[f"{of} {float(arm[2]):g}"] = (bare,), units
     return found
 
 
 def components(where: Any, read: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], bool]:
-    """Those of strain or stress, and whether they are of strain."""
+    """Those of strain or stress, or arms with places of their own, and whether they are of strain."""
     arms = {float(name[4:]): v for name, v in read.items() if name.startswith("arm ")}
+    placed = [name for name in read if name[:2] in ("x ", "y ")]
+    for name in placed:
+        require(float(name[2:]) in arms, where, f"'{name.replace(' ', '_')}' is the place of no arm")
     strain = {part: read[f"strain_{part}"] for part in COMPONENTS if f"strain_{part}" in read}
     stress = {part: read[f"stress_{part}"] for part in COMPONENTS if f"stress_{part}" in read}
     if "gamma_xy" in read:
@@ -187,7 +266,8 @@ def components(where: Any, read: dict[str, np.ndarray]) -> tuple[dict[str, np.nd
     if arms:
         require(len(arms) == 3, where, f"a rosette has three arms, not {len(arms)}")
         try:
-            return from_arms(arms), True
+            made = from_arms(arms)
+            return {f"{angle:g}": v for angle, v in arms.items()} if placed else made, True
         except CaseError as error:
             raise DataError(f"{where}: {error}") from None
     return strain or stress, bool(strain)
@@ -197,7 +277,9 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     """The gauges of a CSV file (commas, or semicolons or tabs with decimal points or commas), a row per gauge
     and time: columns gauge, x_mm, y_mm, time_us and strain_xx, strain_yy, strain_xy, gamma_xy = 2 strain_xy,
     strain_-45, strain_90, strain_45 of the arms of a rosette, or stress_xx_MPa and so on. Units in the names,
-    as read_onsets has them; strain has none, or ustrain. Without the column gauge there is one.
+    as read_onsets has them; strain has none, or ustrain, or percent. Arms that are not at one place have
+    x_-45_mm, y_-45_mm and so on. Without the column gauge there is one. Empty cells, nan, NA and - are
+    values that are missing: this time of the gauge is left out.
 
     Raises Error where the file is no such record."""
     file = path(file, "file")
@@ -205,10 +287,14 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     header = rows_of_file.header
     names = [name for name in header if name and name.strip().lower() not in GAUGE_NAMES]
     chosen = columns_of(file, names, quantities(names), ("x_m", "y_m", "time_s"), WANTED)
-    read = {q: in_si(rows_of_file.numbers(name), factor) for q, (name, factor) in chosen.items()}
-    for q, values in read.items():
-        require(np.isfinite(values), file, f"column '{one_line(chosen[q][0])}' has an empty cell")
+    read = {}
+    for q, (name, factor) in chosen.items():
+        is_value = q.startswith(("strain", "stress", "gamma", "arm"))
+        read[q] = in_si(numbers_of(rows_of_file, name, is_value), factor)
+        if not is_value:
+            require(np.isfinite(read[q]), file, f"column '{one_line(name)}' has an empty cell")
     of_all, is_strain = components(file, read)
+    arms = {q[4:]: v for q, v in read.items() if q.startswith("arm ")}
     column = next((name for name in header if name.strip().lower() in GAUGE_NAMES), None)
     labels = np.array(
         rows_of_file.texts(column) if column else ["gauge"] * len(rows_of_file.rows), dtype=np.str_
@@ -217,12 +303,28 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     made = []
     for label in dict.fromkeys(labels.tolist()):
         rows = labels == label
-        x_m, y_m, time_s = (read[q][rows] for q in ("x_m", "y_m", "time_s"))
-        if np.ptp(x_m) > 0 or np.ptp(y_m) > 0:
+        at = {q: v[rows] for q, v in read.items() if q in ("x_m", "y_m") or q[:2] in ("x ", "y ")}
+        if any(np.ptp(v) > 0 for v in at.values()):
             raise DataError(f"{file}: gauge '{one_line(label)}' is at more than one place")
+        x_m, y_m = (float(at[q][0]) for q in ("x_m", "y_m"))
+        places: dict[str, tuple[float, float]] = {}
+        doubts: tuple[str, ...] = ()
+        if len(at) > 2:
+            places = {
+                arm: (float(at.get(f"x {arm}", [x_m])[0]), float(at.get(f"y {arm}", [y_m])[0]))
+                for arm in arms
+            }
+        elif arms:
+            doubts = (
+                "arms of the rosette are taken as at one place; give that of each by columns such as "
+                f"x_{next(iter(arms))}_mm: 1 mm apart they change Gamma",
+            )
         try:
             own = {part: v[rows] for part, v in of_all.items()}
-            made.append(Gauge(label, float(x_m[0]), float(y_m[0]), time_s, own, is_strain))
+            gauge = Gauge(label, x_m, y_m, read["time_s"][rows], own, is_strain, 0.0, places, doubts)
+            # Of arms that became components, those are cut off, not these.
+            flat_s = [f for v in arms.values() for f in flat_tops(read["time_s"][rows], v[rows])]
+            made.append(gauge.changed(flat_s) if arms else gauge)
         except CaseError as error:
             raise DataError(f"{file}: {error}") from None
     return made
@@ -338,7 +440,12 @@ def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 5
     shift_s and own_shift_s: the run's clock less the record's. NaN for components that were not recorded.
     Its attribute notes says what speaks against the comparison."""
     instance(run, OpenRun, "run")
-    besides = [Beside(gauge, run) for gauge in some_gauges(gauges)]
+    given = some_gauges(gauges)
+    if apart := [g.name for g in given if g.parts[0] not in COMPONENTS]:
+        raise CaseError(
+            f"gauge {apart[0]}: its arms are kept apart; compare it by xx, yy, xy, or without places of arms"
+        )
+    besides = [Beside(gauge, run) for gauge in given]
     within = number(within_s, "within_s", least=0, finite=True)
     shift = best_shift(besides, within)
     if not np.isfinite([b.misfit(shift) for b in besides][0]).all():

@@ -17,7 +17,7 @@ import xarray as xr
 from slipfront import command
 from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
-from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, gauges_of, read_gauges
+from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, from_arms, gauges_of, read_gauges
 from slipfront.opened import OpenRun
 from slipfront.read import read_place
 from slipfront.tip_fit import TipFit, bodies_of, fit_tips, limiting_speed_m_per_s
@@ -179,14 +179,23 @@ def as_csv(rows: list[dict[str, Any]]) -> str:
     return text.getvalue()
 
 
+def in_components(of: dict[str, float]) -> dict[str, Any]:
+    """Of components or of arms."""
+    if not of or next(iter(of)) in COMPONENTS:
+        return of
+    made = from_arms({float(arm): np.array([value]) for arm, value in of.items()})
+    return {part: float(value[0]) for part, value in made.items()}
+
+
 def row_of(fit: TipFit, is_strain: bool) -> dict[str, Any]:
     kind = "strain_{}" if is_strain else "stress_{}_Pa"
     row: dict[str, Any] = {name: getattr(fit, name) for name in ("gauge", "x_m", "y_m", "direction", *OF_FIT)}
     row |= {"residual": fit.residual_of_all}
+    offset, step = in_components(fit.offset), in_components(fit.step)
     for part in COMPONENTS:
         row[f"residual_{part}"] = fit.residual.get(part, "")
-        row[f"offset_{kind.format(part)}"] = fit.offset.get(part, "")
-        row[f"step_{kind.format(part)}"] = fit.step.get(part, "")
+        row[f"offset_{kind.format(part)}"] = offset.get(part, "")
+        row[f"step_{kind.format(part)}"] = step.get(part, "")
     return row | {"times": fit.n_times, "doubts": "; ".join(fit.doubts)}
 
 

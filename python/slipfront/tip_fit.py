@@ -6,6 +6,7 @@ K is positive where the body above slips to +x."""
 from __future__ import annotations
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -15,7 +16,7 @@ from numpy.typing import ArrayLike
 from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.fracture import case_of_bodies
-from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth, some_gauges
+from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth, some_gauges, weights
 from slipfront.given import array, flag, instance, number, shown, whole
 from slipfront.opened import OpenRun
 from slipfront.ranges import beyond
@@ -27,9 +28,16 @@ LEAST_SIGNAL = 5  # of K, the tip's speed and time given, over its error: below,
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
 LEAST_TIMES = 8
+#: Metals are elastic up to some 0.2 %, rock breaks at 0.2 to 0.5 %; glassy polymers alone of what is above
+#: this modulus bear more. Fronts change strains by 1e-5 to 1e-3: more, if these are numbers of percent.
+STIFF_STRAIN, STIFF_PA = 0.002, 1e9
+NORMAL_MEDIAN = 0.6745  # of the size of a normal variable, over its standard deviation
 ROUNDING = 1e-24  # of squares: a record that changes less is constant
 ROUNDS = 3  # of fits of several tips, each without the others
 LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
+#: Lag of a low-pass, in the time that the front takes for a height: where the search begins, and its end. It
+#: lasts for so many lags.
+LAG, LONGEST_LAG, LAGS = 0.3, 2.0, 6
 REACH = 5.0  # of a fit from the tip, in heights of the gauge
 
 
@@ -64,13 +72,49 @@ class TipFit:
         return self.direction != 0
 
 
-def no_tip(gauge: Gauge, why: str, doubts: list[str]) -> TipFit:
+def no_tip(gauge: Gauge, why: str, doubts: list[str], limit: float, unchanged: str = "") -> TipFit:
     numbers = (np.nan,) * 8
+    change = largest_change(gauge, limit)
+    said = f"no tip is found: {change}; {why}" if change else f"no front passes: {unchanged}{why}"
     return TipFit(
         gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0,
-        [f"no front passes: {why}", *doubts],
+        [said, *doubts, *flat_tops_within(gauge, -np.inf, np.inf), *gauge.doubts],
         np.empty(0), {},
     )  # fmt: skip
+
+
+def flat_tops_within(gauge: Gauge, from_s: float, to_s: float) -> list[str]:
+    """A doubt where there are any: of the longest."""
+    inside = [f for f in gauge.flat_s if f[0] <= to_s and f[1] >= from_s]
+    first_s, last_s = max(inside, key=lambda f: f[1] - f[0], default=(0.0, 0.0))
+    told = f"the record is flat at its end from {1e6 * first_s:.4g} to {1e6 * last_s:.4g} us"
+    return [f"{told}, as of an amplifier at its limit"] if inside else []
+
+
+def largest_change(gauge: Gauge, limit: float) -> str:
+    """In words; empty where means over the time that the fastest front takes for a height stay within
+    LEAST_SIGNAL standard deviations, of what they differ by from one such time to the next for most of the
+    record, on either side."""
+    height_m, time_s = abs(gauge.y_m), gauge.time_s
+    n = min(max(1, round(height_m / limit / float(np.median(np.diff(time_s))))), len(time_s) // 3)
+    most, told = 2.0 * LEAST_SIGNAL, ""
+    for part, values in gauge.values.items():
+        means = np.convolve(values, np.ones(n) / n, "valid")
+        usual = float(np.median(np.abs(means[n:] - means[:-n]))) / NORMAL_MEDIAN / np.sqrt(2)
+        i, j = sorted((int(means.argmin()), int(means.argmax())))
+        size = abs(float(means[j] - means[i]))
+        if size <= max(most * usual, 1e-12 * float(np.abs(values).max())):
+            continue
+        most = size / max(usual, 1e-300)
+        done = (means[i : j + 1] - means[i]) / (means[j] - means[i])
+        begins, ends = np.flatnonzero(done <= 0.25)[-1], np.flatnonzero(done >= 0.75)[0]
+        takes_s = abs(float(time_s[i + ends] - time_s[i + begins]))
+        amount = f"{1e6 * size:.3g} ustrain" if gauge.is_strain else f"{1e-6 * size:.3g} MPa"
+        told = (
+            f"{part} {'rises' if means[j] > means[i] else 'falls'} by {amount}, half of it within "
+            f"{1e6 * takes_s:.3g} us, in which a front runs up to {takes_s * limit / height_m:.2g} heights"
+        )
+    return told
 
 
 class Trial(NamedTuple):
@@ -96,13 +140,23 @@ class Tip:
         self, gauge: Gauge, case: _core.Case, along_x: int, step: bool, r_m: tuple[float, float]
     ) -> None:
         self.gauge, self.case, self.along_x, self.step, self.r_m = gauge, case, along_x, step, r_m
-        self.parts = [part for part in COMPONENTS if part in gauge.values]
+        self.parts = gauge.parts
+        self.weights = [weights(part) for part in self.parts]
+        self.places_m = [gauge.places_m.get(part, (gauge.x_m, gauge.y_m)) for part in self.parts]
         self.data = np.array([gauge.values[part] for part in self.parts])
         self.time_s = gauge.time_s
-        self.kernel = None
-        if gauge.smoothing_s > 0:
-            self.step_s = float(self.time_s[1] - self.time_s[0])
-            self.kernel = gaussian(gauge.smoothing_s / self.step_s)
+        self.step_s = float(np.median(np.diff(self.time_s)))
+        self.own_kernel = gaussian(gauge.smoothing_s / self.step_s)
+        # Of a low-pass of first order that the record is taken to have passed; and whether of a high-pass.
+        self.lag_s, self.leaks = 0.0, False
+
+    def kernel(self) -> tuple[np.ndarray, int]:
+        """Weights of what the record has passed, and how many of them are of times to come."""
+        weights, n = self.own_kernel, len(self.own_kernel) // 2
+        if self.lag_s > 0:
+            past = np.exp(-np.arange(np.ceil(LAGS * self.lag_s / self.step_s)) * self.step_s / self.lag_s)
+            weights = np.convolve(weights, past / past.sum())
+        return weights, n
 
     def inside(self, speed: float, tip_s: float) -> np.ndarray:
         """Indices of the times at which the gauge is in reach of the tip and outside of r_min."""
@@ -111,24 +165,27 @@ class Tip:
         return at[np.hypot(speed * (self.time_s[at] - tip_s), self.gauge.y_m) >= self.r_m[0]]
 
     def shapes(self, speed: float, tip_s: float, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The field over K of each component, and the step that goes with it, at the times of these
-        indices."""
+        """The field over K of each component or arm, and the step that goes with it, at the times of these
+        indices. [parts, times] both"""
         time_s = self.time_s[at]
-        if self.kernel is not None:
-            n = len(self.kernel) // 2
-            around = np.arange(at[0] - n, at[-1] + n + 1)
+        kernel, n = self.kernel()
+        if len(kernel) > 1:
+            around = np.arange(at[0] - (len(kernel) - 1 - n), at[-1] + n + 1)
             time_s = self.time_s[0] + self.step_s * around
-        x_m = np.ascontiguousarray(self.along_x * speed * (tip_s - time_s))
-        y_m = np.full_like(x_m, self.gauge.y_m)
         tip = _core.TipField(self.case, speed, self.along_x)
         of = tip.strain_per_K if self.gauge.is_strain else tip.stress_per_K
-        per_K = dict(zip(COMPONENTS, of(x_m, y_m), strict=True))
-        rows = [per_K[part] for part in self.parts]
-        # 0 ahead and 1 behind on the interface, and harmonic above it.
-        rows.append(np.arctan2(abs(self.gauge.y_m), self.along_x * x_m) / np.pi)
-        if self.kernel is not None:
-            rows = [smooth(row, self.kernel)[at - at[0]] for row in rows]
-        return np.array(rows[:-1]), rows[-1]
+        at_place: dict[tuple[float, float], list[np.ndarray]] = {}
+        for place in self.places_m:
+            if place not in at_place:
+                x_m = self.along_x * speed * (tip_s - time_s) + (place[0] - self.gauge.x_m)
+                at_place[place] = list(of(x_m, np.full_like(x_m, place[1])))
+                # 0 ahead and 1 behind on the interface, and harmonic above it.
+                at_place[place].append(np.arctan2(abs(place[1]), self.along_x * x_m) / np.pi)
+        rows = [w @ np.array(at_place[p][:3]) for w, p in zip(self.weights, self.places_m, strict=True)]
+        steps = [at_place[place][3] for place in self.places_m]
+        if len(kernel) > 1:
+            rows, steps = ([smooth(row, kernel)[at - at[0]] for row in of] for of in (rows, steps))
+        return np.array(rows), np.array(steps)
 
     def columns(self, speed: float, tip_s: float, at: np.ndarray) -> np.ndarray:
         """Of the linear parameters: K; offset of each component; step of each. [components x times, ...]"""
@@ -137,7 +194,11 @@ class Tip:
         level = np.repeat(each, len(at), axis=0)
         columns = [per_K.reshape(-1, 1), level]
         if self.step:
-            columns.append(level * np.tile(stepped, len(self.parts))[:, None])
+            columns.append(level * stepped.reshape(-1, 1))
+        if self.leaks:  # dy/dt = dx/dt - 2 pi f y: what it takes is the integral of what it leaves
+            steps_s, pairs = np.diff(self.time_s), self.data[:, 1:] + self.data[:, :-1]
+            gone = np.cumsum(np.pad(0.5 * pairs * steps_s, ((0, 0), (1, 0))), axis=1)
+            columns.append(gone[:, at].reshape(-1, 1))
         return np.hstack(columns)
 
     def trial(self, speed: float, tip_s: float) -> Trial:
@@ -282,11 +343,14 @@ def fit_tip(
             raise CaseError(f"speed_m_per_s is {speeds[0]:g} m/s; the field ends at {limit:.5g} m/s")
     try:
         with np.errstate(all="ignore"):
-            return sought(gauge, case, speeds, speed_m_per_s is not None, direction, tip_s, step, r_m)
+            fit = sought(gauge, case, speeds, speed_m_per_s is not None, direction, tip_s, step, r_m)
     except (np.linalg.LinAlgError, OverflowError):
         raise CaseError(
             f"gauge {gauge.name}: cannot be fitted: its numbers are too large or too small"
         ) from None
+    if direction is None and fit.has_tip and gauge.parts == ["xy"]:  # the same in a mirror
+        return replace(fit, doubts=[*fit.doubts, "xy alone does not tell which way: give direction"])
+    return fit
 
 
 def sought(
@@ -309,12 +373,37 @@ def sought(
     if not order:
         return no_tip(
             gauge,
-            f"nothing changes, or fewer than {LEAST_TIMES} times are within r_max_m = {r_m[1]:g} m of a tip: "
-            "give a larger one, or check the units of y and time",
+            f"fewer than {LEAST_TIMES} times are within r_max_m = {r_m[1]:g} m of a tip: give a larger one, "
+            "or check the units of y and time",
             beyond({"limiting_speed_m_per_s": limit}),
+            limit,
+            "nothing changes, or ",
         )
     _, tip, v, t, at = ended[order[0]]
     return result(tip, v, t, at, given, limit)
+
+
+def nearest(
+    tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float, lag_s: float = 0.0
+) -> tuple[float, float, float]:
+    """Time of the tip, speed, and lag where it is above 0, that leave least of the record at these times."""
+    data, takes_s, reach_s = tip.data[:, at].ravel(), abs(tip.gauge.y_m) / speed, tip.r_m[1] / speed
+
+    def residual(p: np.ndarray) -> np.ndarray:
+        tip.lag_s = float(p[-1]) if lag_s > 0 else 0.0
+        columns = tip.columns(speed if given else p[1], p[0], at)
+        q, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
+        return data - q @ (q.T @ data)
+
+    sought = [(at_s, 1e-3 * takes_s, at_s - reach_s, at_s + reach_s)]  # start, step, ends
+    if not given:
+        sought.append((speed, 1e-4 * limit, 0.02 * limit, 0.999 * limit))
+    if lag_s > 0:
+        sought.append((lag_s, 1e-2 * lag_s, 0.25 * tip.step_s, LONGEST_LAG * takes_s))
+    start, steps, low, high = np.array(sought).T
+    found = least_squares(residual, start, steps, low, high)
+    tip.lag_s = float(found[-1]) if lag_s > 0 else 0.0
+    return float(found[0]), speed if given else float(found[1]), tip.lag_s
 
 
 def refined(
@@ -322,23 +411,13 @@ def refined(
 ) -> tuple[float, float, np.ndarray]:
     """Time of the tip, speed and the times of the fit, which follow the tip."""
 
-    def residual(p: np.ndarray) -> np.ndarray:
-        columns = tip.columns(speed if given else p[1], p[0], at)
-        q, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
-        data = tip.data[:, at].ravel()
-        return data - q @ (q.T @ data)
-
-    n = 1 if given else 2
     at = tip.inside(speed, at_s)
     for _ in range(8):
-        reach_s = tip.r_m[1] / speed
-        steps = np.array([1e-3 * abs(tip.gauge.y_m) / speed, 1e-4 * limit])[:n]
-        low, high = np.array([at_s - reach_s, 0.02 * limit]), np.array([at_s + reach_s, 0.999 * limit])
-        found = least_squares(residual, np.array([at_s, speed])[:n], steps, low[:n], high[:n])
-        moved = tip.inside(speed if given else found[1], found[0])
+        to_s, v, _ = nearest(tip, speed, at_s, at, given, limit)
+        moved = tip.inside(v, to_s)
         if len(moved) < LEAST_TIMES:
             break
-        at_s, speed = float(found[0]), speed if given else float(found[1])
+        at_s, speed = to_s, v
         if np.array_equal(moved, at):
             break
         at = moved
@@ -357,6 +436,44 @@ def correlated(left: np.ndarray) -> float:
     return max(1.0, float(2 * follow[:last].sum() / max(follow[0], 1e-300) - 1))
 
 
+def filters_that_explain_more(
+    tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float,
+    found: tuple[float, float, float],
+) -> list[str]:  # fmt: skip
+    """What an amplifier, which the fit does not know, may have done: a high-pass or low-pass of first order
+    that leaves LEAST_SIGNAL errors less of the record, where its Gamma is two errors from the one found.
+
+    found: Gamma, its error, and the square of what the fit leaves."""
+    Gamma, error, square = found
+    # A filter goes by even steps; a record of other times than those of a tip has no lag.
+    takes_s, uneven_s = abs(tip.gauge.y_m) / speed, float(np.ptp(np.diff(tip.time_s)))
+    has_lag = uneven_s < 0.01 * tip.step_s < tip.step_s < takes_s < len(tip.time_s) * tip.step_s
+    told = []
+    for word, like in (("high", "an amplifier"), ("low", "an amplifier or a cohesive zone")):
+        other, lag_s = copy(tip), LAG * takes_s if word == "low" else 0.0
+        other.leaks = word == "high"
+        if lag_s > 0 and not has_lag:
+            continue
+        to_s, v, lag_s = nearest(other, speed, at_s, at, given, limit, lag_s)
+        columns, data = other.columns(v, to_s, at), tip.data[:, at]
+        size = np.linalg.norm(columns, axis=0)
+        linear = np.linalg.lstsq(columns / size, data.ravel(), rcond=None)[0] / size
+        left = data - (columns @ linear).reshape(data.shape)
+        variance = (left**2).sum() / max(data.size / correlated(left) - columns.shape[1] - 2, 1)
+        own = float(linear[0]) ** 2 * _core.TipField(tip.case, v, tip.along_x).energy_per_K2
+        cut_off = 1 / lag_s if lag_s > 0 else -float(linear[-1])
+        if (
+            square - (left**2).sum() > LEAST_SIGNAL**2 * variance
+            and abs(own - Gamma) > 2 * error
+            and cut_off > 0
+        ):
+            told.append(
+                f"a {word}-pass of {cut_off / (2 * np.pi):.2g} Hz, as of {like}, explains more, and makes "
+                f"Gamma {own:.3g} J/m2"
+            )
+    return told
+
+
 def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float) -> TipFit:
     gauge, n = tip.gauge, len(tip.parts)
     columns, data = tip.columns(speed, at_s, at), tip.data[:, at].ravel()
@@ -372,6 +489,9 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
     def rms(values: np.ndarray) -> Any:
         return np.sqrt((values**2).mean(axis=-1))
 
+    def per_K2(v: float) -> float:
+        return _core.TipField(tip.case, v, tip.along_x).energy_per_K2
+
     ds, dv = 1e-3 * abs(gauge.y_m) / speed, 1e-4 * limit
     moved = [(tip.columns(speed, at_s + d, at) @ linear) for d in (ds, -ds)]
     slopes = [columns, ((moved[0] - moved[1]) / (2 * ds))[:, None]]
@@ -382,22 +502,26 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
     scale = np.linalg.norm(jacobian, axis=0)
     variance = (left**2).sum() / max(data.size / correlated(left) - jacobian.shape[1], 1)
     largest = "strain" if gauge.is_strain else "stress_Pa"
-    doubts = beyond({"limiting_speed_m_per_s": limit, largest: float(np.abs(about_mean).max())})
+    most = float(np.abs(about_mean).max())
+    doubts = beyond({"limiting_speed_m_per_s": limit, largest: most})
+    if gauge.is_strain and most > STIFF_STRAIN and per_K2(0.0) * STIFF_PA < 1:
+        doubts.append(
+            f"strain changes by {most:.2g}, beyond the elastic range of bodies as stiff: check its units"
+        )
     of_K = np.linalg.pinv((columns / size).T @ (columns / size))[0, 0] / size[0] ** 2
     signal = abs(K) / float(np.sqrt(max(variance * of_K, 1e-300)))
     if signal < LEAST_SIGNAL:
         return no_tip(
             gauge,
-            f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed; above "
-            f"{limit:.5g} m/s fronts have another",
+            f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed: where the cohesive "
+            "zone is longer than the gauge is high give r_min_m beyond it, and r_max_m; above "
+            f"{limit:.5g} m/s fronts have another field",
             doubts,
+            limit,
         )
     covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
     errors = np.sqrt(np.diag(covariance))
     i_tip, i_speed = columns.shape[1], columns.shape[1] + 1
-
-    def per_K2(v: float) -> float:
-        return _core.TipField(tip.case, v, tip.along_x).energy_per_K2
 
     slope = np.zeros(jacobian.shape[1])
     slope[0] = 2 * K * per_K2(speed)
@@ -415,6 +539,19 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
     if K < 0:
         doubts.append("K is negative: the body above slips to -x")
     time_s = tip.time_s[at]
+    doubts += flat_tops_within(gauge, time_s[0], time_s[-1])
+    doubts += filters_that_explain_more(
+        tip, speed, at_s, at, given, limit, (Gamma, Gamma_error, float((left**2).sum()))
+    )
+    gap_s = float(np.diff(tip.time_s[at[0] : at[-1] + 1]).max())
+    if gap_s * speed > abs(gauge.y_m):
+        doubts.append(
+            f"times of the record are up to {1e6 * gap_s:.3g} us apart, in which the front runs farther than "
+            "the gauge is high"
+        )
+    if not given and n == 1:
+        doubts.append(f"{tip.parts[0]} alone hardly tells V: give speed_m_per_s, a number or gauges")
+    doubts += gauge.doubts
     if min(np.count_nonzero(time_s < at_s), np.count_nonzero(time_s > at_s)) < 4:
         doubts.append("the record has hardly any times on one side of the tip")
     return TipFit(
@@ -438,7 +575,8 @@ def fit_tips(
     """fit_tip of each gauge and each of so many passages of fronts, in the order of time.
 
     speed_m_per_s: a number; None: of each fit; "gauges": by the times of the tip at the gauges beside it, in
-    the same passage and direction, fitted first. options: of fit_tip."""
+    the same passage and direction, fitted first. options: of fit_tip. Of one passage, the order of arrivals
+    at the gauges beside it gives a direction that a record does not tell by xy with xx or yy."""
     case, n = bodies_of(bodies), whole(passages, "passages", least=1)
     if isinstance(speed_m_per_s, str) and speed_m_per_s != "gauges":
         raise CaseError(f"speed_m_per_s is {shown(speed_m_per_s)}; it must be a number, None or 'gauges'")
@@ -446,6 +584,16 @@ def fit_tips(
     given = some_gauges(gauges)
     options["speed_m_per_s"] = speed
     found = [passing(gauge, case, n, options) for gauge in given]
+    if n == 1 and options.get("direction") is None:
+        ways = ways_by_arrivals([fits[0] for fits in found])
+        for k, gauge in enumerate(given):
+            if (
+                ways[k]
+                and not ("xy" in gauge.parts and len(gauge.parts) > 1)
+                and gauge.parts[0] in COMPONENTS
+            ):
+                known = {**options, "direction": ways[k], "tip_s": found[k][0].tip_s}
+                found[k] = [fit_tip(gauge, case, **known)]
     if speed_m_per_s == "gauges":
         speeds = [speeds_between(found, own) for own in found]
         for k, gauge in enumerate(given):
@@ -496,10 +644,28 @@ def without(gauge: Gauge, case: _core.Case, fit: TipFit) -> Gauge:
         fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s))
     )
     less = {
-        part: fit.K_Pa_sqrt_m * of + fit.step[part] * stepped
-        for part, of in zip(fit.step, per_K, strict=True)
+        part: fit.K_Pa_sqrt_m * of + fit.step[part] * step
+        for part, of, step in zip(fit.step, per_K, stepped, strict=True)
     }
-    return replace(gauge, values={part: v - less[part] for part, v in gauge.values.items()})
+    return gauge.changed(gauge.flat_s, values={part: v - less[part] for part, v in gauge.values.items()})
+
+
+def ways_by_arrivals(fits: list[TipFit]) -> list[int]:
+    """The direction of the front at each gauge, +1 or -1, by the gauges on its sides; 0 where there are none
+    or their times differ by less than LEAST_SIGNAL errors."""
+    x, first = np.unique([f.x_m for f in fits if f.has_tip], return_index=True)
+    at = [[f for f in fits if f.has_tip][k] for k in first]
+    ways = []
+    for fit in fits:
+        k = int(np.searchsorted(x, fit.x_m))
+        before, after = at[max(k - 1, 0) : k + 1], at[k : k + 2]
+        if not fit.has_tip or len(x) < 2:
+            ways.append(0)
+            continue
+        later_s = after[-1].tip_s - before[0].tip_s
+        error_s = np.hypot(after[-1].tip_error_s, before[0].tip_error_s)
+        ways.append(int(np.sign(later_s)) if abs(later_s) > LEAST_SIGNAL * error_s else 0)
+    return ways
 
 
 def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:

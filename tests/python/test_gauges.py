@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import slipfront
 from common import ROOT
-from slipfront import _core, gauges_command, tip_fit
+from slipfront import _core, gauges, gauges_command, tip_fit
 
 PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180.0}
 OPTIONS = ["--youngs-modulus-pa", "5.65e9", "--poissons-ratio", "0.33", "--density-kg-per-m3", "1180"]
@@ -196,6 +196,173 @@ def test_wrong_units_are_doubted(gauge, bodies, doubt):
     assert doubt in "; ".join(slipfront.fit_tip(gauge, bodies).doubts)
 
 
+def test_strain_in_percent():
+    """Numbers of percent are a hundred times as large."""
+    assert "check its units" in "; ".join(slipfront.fit_tip(scaled(strain=100.0), EQUAL).doubts)
+    assert slipfront.fit_tip(scaled(), EQUAL).doubts == []
+
+
+def record_file(name):
+    return slipfront.read_gauges(ROOT / "tests/python/gauge_records" / name)
+
+
+def placed(tmp_path, name, arms_mm):
+    """The record with a column for the place of each arm."""
+    head, *rows = (ROOT / "tests/python/gauge_records" / name).read_text().splitlines()
+    file = tmp_path / name
+    names = ",".join(f"x_{arm}_mm" for arm in arms_mm)
+    places = ",".join(str(x_mm) for x_mm in arms_mm.values())
+    file.write_text("\n".join([f"{head},{names}", *(f"{row},{places}" for row in rows)]) + "\n")
+    return file
+
+
+@pytest.mark.parametrize(
+    "name, arms_mm",
+    [
+        ("rosette_arms_at_one_place.csv", {"-45": 100}),
+        ("rosette_arms_1mm_apart.csv", {"-45": 99, "90": 100, "45": 101}),
+    ],
+)
+def test_arms_at_places_of_their_own(tmp_path, name, arms_mm):
+    """A front at 900 m/s with Gamma = 1.1 J/m2; 2 ustrain of noise."""
+    (gauge,) = slipfront.read_gauges(file := placed(tmp_path, name, arms_mm))
+    fit = slipfront.fit_tip(gauge, EQUAL)
+    assert fit.doubts == [] and fit.direction == 1
+    assert fit.Gamma_J_per_m2 == pytest.approx(1.1, abs=2 * fit.Gamma_error_J_per_m2)
+    assert fit.Gamma_error_J_per_m2 < 0.02
+    assert fit.speed_m_per_s == pytest.approx(900, abs=2 * fit.speed_error_m_per_s)
+    (without,) = record_file(name)
+    assert "taken as at one place" in slipfront.fit_tip(without, EQUAL).doubts[-1]
+    if len(arms_mm) == 1:
+        return
+    table, picture = tmp_path / "fits.csv", tmp_path / "fits.png"
+    assert gauges_command.main([str(file), *OPTIONS, "-o", str(table), "--figure", str(picture)]) == 0
+    (row,) = csv.DictReader(table.read_text().splitlines()[1:])
+    assert abs(float(row["step_strain_xx"])) < 5e-6 and row["residual_xx"] == "" and picture.exists()
+
+
+def test_arms_are_where_they_are():
+    """Of a tip without noise: each arm sees the field of its own place, and the step there."""
+    places = {"-45": (0.099, 3.5e-3), "90": (0.1, 4.5e-3), "45": (0.101, 3e-3)}
+    values = {}
+    for arm, (x_m, y_m) in places.items():
+        at = record(y_m=y_m, tip_s=TIP_S + (x_m - 0.1) / SPEED).values
+        values[arm] = sum(w * at[p] for w, p in zip(gauges.weights(arm), ("xx", "yy", "xy"), strict=True))
+    gauge = slipfront.Gauge("SG1", 0.1, 3.5e-3, TIME_S, values, places_m=places)
+    fit = slipfront.fit_tip(gauge, EQUAL)
+    assert fit.Gamma_J_per_m2 == pytest.approx(GAMMA, rel=1e-4) and fit.doubts == []
+    assert fit.tip_s == pytest.approx(TIP_S, abs=1e-9)
+    two = slipfront.fit_tips([gauge], EQUAL, passages=2)
+    assert [f.has_tip for f in two] == [True, False]
+
+
+def test_a_direction_by_the_order_of_arrivals():
+    three = record_file("xy_only_front_to_minus_x.csv")
+    fits = slipfront.fit_tips(three, EQUAL, speed_m_per_s="gauges")
+    assert [f.direction for f in fits] == [-1, -1, -1]
+    assert [f.speed_m_per_s for f in fits] == pytest.approx([900] * 3, rel=2e-3)
+    assert all(f.doubts == [] for f in fits)
+    (alone,) = slipfront.fit_tips(three[:1], EQUAL)
+    assert alone.doubts == [
+        "xy alone hardly tells V: give speed_m_per_s, a number or gauges",
+        "xy alone does not tell which way: give direction",
+    ]
+    assert slipfront.fit_tip(three[0], EQUAL, speed_m_per_s=900, direction=-1).doubts == []
+
+
+def test_what_a_record_does_where_no_tip_is_found():
+    """Of a cohesive zone of 14 mm past a gauge 3.5 mm high; behind it there is the field of a tip."""
+    (gauge,) = record_file("cohesive_zone_14mm.csv")
+    fit = slipfront.fit_tip(gauge, EQUAL)
+    assert not fit.has_tip
+    assert re.match(
+        "no tip is found: xy falls by 151 ustrain, half of it within 20.* us, in which a front runs up to "
+        "7.2 heights; .* longer than the gauge is high give r_min_m beyond it, and r_max_m",
+        fit.doubts[0],
+    )
+    beyond = slipfront.fit_tip(gauge, EQUAL, r_min_m=20e-3, r_max_m=60e-3, speed_m_per_s=900)
+    assert beyond.Gamma_J_per_m2 == pytest.approx(1.1, rel=0.15)
+
+
+def passed(gauge, smooth_s=None, leak_s=None):
+    """A record behind a low-pass or high-pass of first order, from rest."""
+    values = {}
+    for part, v in gauge.values.items():
+        made, dt = v - v[0], TIME_S[1]
+        if smooth_s is not None:
+            share, out = 1 - np.exp(-dt / smooth_s), 0.0
+            made = np.array([out := out + share * (each - out) for each in made])
+        if leak_s is not None:
+            keep, out = np.exp(-dt / leak_s), 0.0
+            made = np.array([out := keep * out + d for d in np.diff(made, prepend=0.0)])
+        values[part] = made
+    return dataclasses.replace(gauge, values=values)
+
+
+@pytest.mark.parametrize(
+    "given, word, cut_off",
+    [({"smooth_s": 5.3e-6}, "low-pass", 30e3), ({"leak_s": 8e-6}, "high-pass", 20e3)],
+)
+def test_amplifiers_are_doubted(given, word, cut_off):
+    """The doubt has the cut-off, and the Gamma that it hides."""
+    fit = slipfront.fit_tip(passed(record(noise=2e-6), **given), EQUAL)
+    assert fit.Gamma_J_per_m2 < 0.65 * GAMMA
+    (told,) = (doubt for doubt in fit.doubts if word in doubt)
+    hertz, Gamma = re.fullmatch(r"a \S+-pass of (\S+) Hz, .* makes Gamma (\S+) J/m2", told).groups()
+    assert float(hertz) == pytest.approx(cut_off, rel=0.1) and float(Gamma) == pytest.approx(GAMMA, rel=0.05)
+
+
+def clipped(gauge, share):
+    """At a share of the peak of each component about its median."""
+    ends = {p: (np.median(v), share * gauge.peak(p)) for p, v in gauge.values.items()}
+    values = {
+        p: np.clip(v, ends[p][0] - ends[p][1], ends[p][0] + ends[p][1]) for p, v in gauge.values.items()
+    }
+    return dataclasses.replace(gauge, values=values)
+
+
+def test_flat_tops_are_doubted():
+    """Before a filter and behind it, and in the rest that a passage leaves; other values have their own."""
+    whole, flat = record(noise=1e-6), "the record is flat at its end from "
+    gauge = clipped(whole, 0.4)
+    fit = slipfront.fit_tip(gauge, EQUAL)
+    assert fit.Gamma_J_per_m2 < 0.6 * GAMMA and any(doubt.startswith(flat) for doubt in fit.doubts)
+    filtered = gauge.prepared(low_pass_Hz=200e3, shift_s=1e-6)
+    assert any(doubt.startswith(flat) for doubt in slipfront.fit_tip(filtered, EQUAL).doubts)
+    assert np.array(filtered.flat_s) == pytest.approx(np.array(gauge.flat_s) + 1e-6)
+    assert tip_fit.without(gauge, tip_fit.bodies_of(EQUAL), fit).flat_s == gauge.flat_s
+    assert dataclasses.replace(gauge, values=whole.values).flat_s == ()
+
+
+@pytest.mark.parametrize(
+    "digit, noise", [(1e-6, 0.0), (5e-6, 0.0), (20e-6, 0.0), (5e-6, 5e-6), (0.1e-6, 2e-6)]
+)
+def test_a_converter_makes_no_flat_tops(digit, noise):
+    gauge = record(noise=noise)
+    rounded = {part: digit * np.round(v / digit) for part, v in gauge.values.items()}
+    assert dataclasses.replace(gauge, values=rounded).flat_s == ()
+
+
+def test_values_that_are_missing(tmp_path):
+    """Times of a gauge at which any of its values misses are left out; so is an arm that has none."""
+    gauge = record(noise=1e-6)
+    values = {part: v.copy() for part, v in gauge.values.items()}
+    values["xx"][50:60], values["yy"][:] = np.nan, np.nan
+    made = dataclasses.replace(gauge, values=values)
+    assert list(made.values) == ["xx", "xy"] and len(made.time_s) == len(TIME_S) - 10
+    fit = slipfront.fit_tip(made, EQUAL)
+    assert fit.Gamma_J_per_m2 == pytest.approx(GAMMA, rel=0.05) and fit.doubts == []
+    values["xx"][190:220] = np.nan
+    gap = slipfront.fit_tip(dataclasses.replace(gauge, values=values), EQUAL)
+    assert "times of the record are up to 7.75 us apart" in "; ".join(gap.doubts)
+    file = tmp_path / "gauges.csv"
+    file.write_text(
+        "x_m,y_m,time_s,stress_xy_MPa\n0,1e-3,0,1\n0,1e-3,1e-6,NaN\n0,1e-3,2e-6,\n0,1e-3,3e-6,2\n"
+    )
+    (read,) = slipfront.read_gauges(file)
+    assert list(read.time_s) == [0, 3e-6] and list(read.values["xy"]) == [1e6, 2e6]
+
+
 def test_a_speed_at_the_end_of_its_range_is_doubted():
     fit = slipfront.fit_tip(record(speed=1232.5), EQUAL)
     assert "V went to the end of its range, 0 to 1233" in "; ".join(fit.doubts)
@@ -214,6 +381,7 @@ def test_forms_of_records(tmp_path):
     xx, yy, xy = (gauge.values[part] for part in ("xx", "yy", "xy"))
     forms = {
         "strain_xx (ustrain);eps_yy;gamma_xy": (1e6 * xx, yy, 2 * xy),
+        "strain_xx (%);eps_yy_percent;strain_xy_strain": (100 * xx, 100 * yy, xy),
         "strain_-45_ustrain;strain_90_ustrain;strain_45_ustrain": (
             1e6 * (0.5 * (xx + yy) - xy), 1e6 * yy, 1e6 * (0.5 * (xx + yy) + xy)
         ),
@@ -242,7 +410,16 @@ def test_forms_of_records(tmp_path):
         ("x_m,y_m,time_s,strain_xx,stress_yy_Pa\n0,1,0,1,1\n", "several kinds"),
         ("x_m,y_m,time_s,strain_0,strain_90\n0,1,0,1,1\n", "a rosette has three arms, not 2"),
         ("x_m,y_m,time_s,strain_0,strain_180,strain_90\n0,1,0,1,1,1\n", "do not determine the strain"),
-        ("x_m,y_m,time_s,strain_xx\n0,1,0,\n", "'strain_xx' has an empty cell"),
+        ("x_m,y_m,time_s,strain_xx\n0,1,0,\n", "gauge gauge: has no values: leave it out"),
+        ("x_m,y_m,time_s,strain_xx\n0,1,,1\n", "'time_s' has an empty cell"),
+        (
+            "x_m,y_m,time_s,strain_0,strain_45,strain_90,x_30_m\n0,1,0,1,1,1,0\n",
+            "'x_30' is the place of no arm",
+        ),
+        (
+            "x_m,y_m,time_s,strain_0,strain_45,strain_90,y_0_m\n0,1,0,1,1,1,-1\n0,1,1,1,1,1,-1\n",
+            "on its side",
+        ),
         ("x_m,y_m,time_s,strain_xx\n0,1,0,1\n0,2,1,1\n", "is at more than one place"),
         ("x_m,y_m,time_s,strain_xx\n0,1,1,1\n0,1,1,1\n", "two times or more that ascend"),
         ("x_m,y_m,time_s,strain_xx\n0,0,1,1\n0,0,2,1\n", "y must be finite and not 0"),

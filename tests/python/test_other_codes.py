@@ -139,6 +139,10 @@ def test_sem2dpack_refuses_what_is_damaged(tmp_path):
     assert "neither NPTS NDAT NSAMP DELT nor" in told_of(header, head.replace(" 40 5 ", " 40 5 5 "))
     assert "could not convert string to float" in told_of(header, head.replace(" 40 5 ", " 40 five "))
     assert "time does not ascend" in told_of(header, head.replace("1.0D-006", "0.0"), names=data)
+    assert "a number of line 2 is not whole" in told_of(header, head.replace(" 40 5 ", " 40.5 5 "))
+    assert "a number of line 2 is not whole" in told_of(header, head.replace(" 40 5 61", " 40 5 60.5"))
+    assert "NPTS is below 2" in told_of(header, head.replace(" 40 5 ", " 0 5 "))
+    assert "empty" in told_of(header, "\n") and "empty" in told_of(table, " \n")
     assert "fewer than the four lines" in told_of(header, " NPTS NDAT\n")
     assert "the last line is cut off" in told_of(header, head[:-1])
     assert ":7: 1 numbers in place of 2" in told_of(header, head.replace(head.splitlines()[6], "0.0"))
@@ -218,6 +222,9 @@ def test_uguca_refuses_what_is_damaged(tmp_path):
     nan = "nan " + first.partition(" ")[2] + "".join(rest)
     assert f"{velo}: a value is missing or not finite" in told_of(velo, lambda text: nan)
     assert "empty" in told_of(velo, lambda text: "")
+    for name in ("run.info", "run.time", "run.coords", "run.fields", velo):
+        for nothing in ("", "\n"):
+            assert f"{name}: empty" in told_of(name, lambda text, nothing=nothing: nothing)
     assert "time does not ascend" in told_of("run.time", lambda text: text.replace("1.0000000000e-06", "9"))
     assert "beside the straight line" in told_of(
         "run.coords", lambda text: text.replace(" 0.0000000000e+00", " 1", 1)
@@ -300,8 +307,8 @@ def test_seissol_slip_from_its_rate(tmp_path):
 
 def test_seissol_onsets_are_those_of_its_slip():
     """Two receivers of TPV104 (SeisSol/precomputed-seissol, tpv104/precomputed/double, the columns that are
-    read, up to 0.4 s), where SRs passes 1 mm/s at 0.03 s, long before slip grows. SeisSol's own rupture times,
-    RT, are 0.309 and 0.319 s; slip grows at 1 mm/s, by its central differences, from the following."""
+    read, up to 0.4 s), where SRs passes 1 mm/s at 0.03 s, long before slip grows. RT of SeisSol is 0.309 and
+    0.319 s; slip grows at 1 mm/s, by its central differences, from the following."""
     files = sorted((ROOT / "tests/python/seissol_tpv104").glob("*.dat"))
     history = slipfront.read_seissol_fault_receivers(files)
     settings = slipfront.FrontSettings(l_star_m=1000, min_length_m=1, arrest_time_s=2)

@@ -26,6 +26,7 @@ def rows_of_panels(
 ) -> Drawing:
     """A row per gauge, a column per component; draw(row, k, axes, part, factor) returns the row's title."""
     parts = [part for part in COMPONENTS if any(part in gauge.values for gauge in gauges)]
+    parts += dict.fromkeys(part for gauge in gauges for part in gauge.parts if part not in COMPONENTS)
     n = min(len(gauges), MOST_ROWS)
     figure = style.new_figure(style.PAGE_MM, 18 + 32 * n)
     axes = figure.subplots(n, len(parts), squeeze=False)
