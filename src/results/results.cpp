@@ -42,7 +42,10 @@ class Csv {
     text_ += column_ == 0 ? '\n' : ',';
     if (text_.size() >= text_bytes_at_once) hand_over();
   }
-  void hand_over() { output_.write(std::exchange(text_, {})); }
+  void hand_over() {
+    output_.write(text_);
+    text_.clear();
+  }
 
  private:
   std::filesystem::path file_;
