@@ -117,7 +117,8 @@ struct SequenceEvent {
 inline constexpr std::array<Column<SequenceEvent, double>, 26> sequence_event_fields = {{
     {"begin_s", "s", "time since the tilt at which it begins", &SequenceEvent::begin_s},
     {"shear_m", "m", "displacement of the top edge or the pusher then", &SequenceEvent::shear_m},
-    {"begin_x_m", "m", "where slip begins inside; the middle of nodes that begin together", &SequenceEvent::begin_x_m},
+    {"begin_x_m", "m", "where slip begins inside; the middle of nodes that begin together",
+     &SequenceEvent::begin_x_m},
     {"from_x_m", "m", "left end of what slips", &SequenceEvent::from_x_m},
     {"to_x_m", "m", "right end", &SequenceEvent::to_x_m},
     {"length_m", "m", "length of the interface that slips", &SequenceEvent::length_m},
