@@ -99,14 +99,16 @@ def predict_fronts(
     Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
     notes = []
-    measured = before = None
+    energy_is_of_run = False
+    before = None
     if isinstance(case, OpenRun):
         if any(str(name).startswith("friction") for name in (*(changes or {}), *tables)):
             raise CaseError("friction of an opened run is what it came to: give its case to change friction")
         if energy is None or residual is None:
-            x_m, work, coefficient = measured = measured_friction(case)
+            x_m, work, coefficient = measured_friction(case)
             ends = f"{x_m[0]:.4g} to {x_m[-1]:.4g} m"
             notes = [f"friction beyond {ends}, where no front broke it down, is that at these ends"]
+            energy_is_of_run = energy is None
             energy = (x_m, work) if energy is None else energy
             residual = (x_m, coefficient) if residual is None else residual
         if case.is_of_sequence:
@@ -131,7 +133,7 @@ def predict_fronts(
         for name, values in found.pop("points").items()
     }
     points["direction"] = points["direction"].astype(np.int64)
-    if not found.pop("law_has_length") and measured is not None and energy[1] is measured[1]:
+    if not found.pop("law_has_length") and energy_is_of_run:
         notes.append("the friction law has no length: its fracture energy is that of the run's mesh")
     found["notes"] += notes
     return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)

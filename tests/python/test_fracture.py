@@ -685,3 +685,11 @@ def test_a_history_of_a_run_gives_the_same_as_the_run():
     )
     np.testing.assert_allclose(own.breakdown_work_J_per_m2[near], 0.5 * 0.3 * 5e6 * 8e-6, rtol=1e-3)
     assert 3.5e-3 < float(own.cohesive_zone_m[near].median()) < 5e-3
+
+
+def test_a_prediction_by_a_run_without_a_length_says_so(tmp_path):
+    note = "the friction law has no length: its fracture energy is that of the run's mesh"
+    case = {"plate": {"element_size_m": 5e-3}, "event": {"kind": "left"}}
+    of_mesh = slipfront.run(case, output=tmp_path / "out", progress=False)
+    assert note in slipfront.predict_fronts(of_mesh).attrs["notes"]
+    assert note not in slipfront.predict_fronts(of_mesh, fracture_energy_J_per_m2=GAMMA).attrs["notes"]
