@@ -280,7 +280,7 @@ def trial(program, seed, keys, magnitudes, folder):
         return "too long to run"
     limit_s = START_S + TIMES_FORETOLD * seconds
     # Slow slip, which the forecast leaves out, takes as long as it takes.
-    is_slow = "rate_and_state" in case["friction.law"] and "sequence.max_events" in case
+    is_slow = "rate_and_state" in case.get("friction.law", "") and "sequence.max_events" in case
     try:
         run = call(program, "run", file, "-o", out, "-q", "--threads", 1, seconds=limit_s)
     except Found:
