@@ -502,7 +502,7 @@ void Sequence::predict(record::SequenceEvent& event) {
   for (const auto& front : p.of_fronts.fronts) {
     // The last node of a front that arrests is the one that it does not break.
     const std::size_t unbroken = front.arrests() ? 1 : 0;
-    if (front.points.size() <= unbroken || (front.arrests() && !p.foretells_arrest(front))) continue;
+    if (front.points.size() <= unbroken) continue;
     const double end_x_m = front.points[front.points.size() - 1 - unbroken].x_m;
     (front.direction < 0 ? event.predicted_from_x_m : event.predicted_to_x_m) = end_x_m;
   }
