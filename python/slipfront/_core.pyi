@@ -95,7 +95,9 @@ class WellPosedness:
 
     @property
     def fastest_growth_per_s(self) -> float:
-        """infinite where unbounded, 0 where none grows"""
+        """
+        infinite where unbounded, 0 where none grows, not a number where nothing tells
+        """
 
     @property
     def fastest_wavelength_m(self) -> float:
