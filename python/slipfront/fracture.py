@@ -93,9 +93,9 @@ def predict_fronts(
 
     Returns, over `point` in the order of travel of each front: x_m, direction, length_m of the crack,
     G_static_J_per_m2, fracture_energy_J_per_m2, v_tip_m_per_s, time_s since the fronts began; the last point
-    of a front that arrests is the node that it does not break. In the attributes: starts, first_length_m,
-    critical_length_m, nucleation_length_m (slow slip over it runs away), arrests (directions), bodies, notes,
-    doubts_of_arrest: why fronts may run on where they arrest by it.
+    of a front that arrests is the node that it does not break. In the attributes: starts (1 or 0),
+    first_length_m, critical_length_m, nucleation_length_m (slow slip over it runs away), arrests, which are
+    directions, bodies, notes, doubts_of_arrest: why fronts may run on where they arrest by it.
     Raises CaseError."""
     energy, residual = fracture_energy_J_per_m2, residual_coefficient
     notes = []
@@ -136,6 +136,7 @@ def predict_fronts(
     if not found.pop("law_has_length") and energy_is_of_run:
         notes.append("the friction law has no length: its fracture energy is that of the run's mesh")
     found["notes"] += notes
+    found["starts"] = int(found["starts"])  # netCDF has no truth values
     return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)
 
 

@@ -62,6 +62,14 @@ def path(value: Any, name: str) -> Path:
     return Path(value)
 
 
+def kept_path(value: Any, name: str) -> Path:
+    """The same, which holds when the working folder is another one."""
+    try:
+        return path(value, name).absolute()
+    except OSError as error:
+        raise CaseError(f"{name} is {shown(value)}: the working folder is gone ({error.strerror})") from None
+
+
 def number(
     value: Any, name: str, *, above: float | None = None, least: float | None = None, finite: bool = False
 ) -> float:

@@ -15,7 +15,7 @@ import xarray as xr
 
 from slipfront.files import DataError, Table, exists, read_table
 from slipfront.folder import LIST, SEQUENCE, problem, read_list, result_file
-from slipfront.given import path
+from slipfront.given import kept_path
 from slipfront.opened import Kept, OpenRun, read_case, stored_history, table_variables
 from slipfront.read import Place, is_sequence, read_place, require
 from slipfront.units import attributes
@@ -243,4 +243,4 @@ def opened(folder: Path, kept: Kept | None = None) -> OpenRun | OpenSequence:
 def open(folder: str | os.PathLike[str]) -> OpenRun | OpenSequence:
     """Opens the results of a run or a sequence, whoever has made them; where there are unfinished ones and
     no complete ones, those. Raises DataError where there are none."""
-    return opened(path(folder, "folder"))
+    return opened(kept_path(folder, "folder"))

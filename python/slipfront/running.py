@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import BlowUpError, CaseError, WriteError
-from slipfront.given import array, flag, number, path, shown, table, text, whole
+from slipfront.given import array, flag, in_order, kept_path, number, path, shown, table, text, whole
 from slipfront.opened import Kept, OpenRun
 from slipfront.opened_sequence import OpenSequence, opened
 from slipfront.read import read_place
@@ -157,7 +157,7 @@ def threads_of(threads: int | None) -> int | None:
 def observers_of(observers: Iterable[Observer]) -> list[Observer]:
     """Checked."""
     pairs: list[Observer] = []
-    for each in observers:
+    for each in in_order(observers, "observers", "a list of pairs of an interval, s, and a function"):
         if not isinstance(each, tuple | list) or len(each) != 2 or not callable(each[1]):
             raise CaseError(f"observers has {shown(each)}; give pairs of an interval, s, and a function")
         pairs.append((number(each[0], "the interval of an observer", least=0), each[1]))
@@ -212,7 +212,7 @@ def run(
         compute(lambda show: prepared.run(folder, replace, n_threads, every_s, show, called), progress)
 
     if output is not None:
-        folder = path(output, "output")
+        folder = kept_path(output, "output")
         work(folder)
         return opened(folder)
     folder = temporary_folder()
@@ -240,7 +240,7 @@ def resume(
     observers: those of `run`, or others.
 
     A run that is complete is opened. Raises as `run` does."""
-    folder, n_threads = path(output, "output"), threads_of(threads)
+    folder, n_threads = kept_path(output, "output"), threads_of(threads)
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
     called = observers_of(observers)
     compute(lambda show: _core.resume(folder, n_threads, every_s, show, called), progress)

@@ -61,6 +61,10 @@ int interrupting_signal() {
   return ended_by;
 }
 
+void pause_for_checkpoints() {
+  ask_for_checkpoint([] { return checkpoint != 0; });
+}
+
 bool checkpoint_wanted() {
   const bool wanted = checkpoint != 0;
   if (wanted) checkpoint = 0;

@@ -16,5 +16,7 @@ int interrupting_signal();
 
 /// Whether a checkpoint was asked for since the last call.
 bool checkpoint_wanted();
+/// From now on one that is asked for pauses the steps at once. Who calls it asks checkpoint_wanted in pauses.
+void pause_for_checkpoints();
 
 }  // namespace slipfront::cli

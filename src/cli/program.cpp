@@ -76,16 +76,23 @@ CommandDescription Program::description() const {
   return described(*app_);
 }
 
+/// Of a word in place of a subcommand; beside it CLI11 would print help.
+static void require_subcommand(const CLI::App* app) {
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  const std::vector<std::string> unused = app->remaining();
+  if (!unused.empty() && app->get_require_subcommand_min() > 0)
+    throw UserError("slipfront: no subcommand {}; see slipfront --help", unused.front());
+}
+
 void Program::run(int argc, char** argv) {
   try {
     app_->parse(argc, argv);
   } catch (const CLI::Success& help) {
+    require_subcommand(app_.get());
     app_->exit(help);
     finish_output();
   } catch (const CLI::ParseError& error) {
-    const std::vector<std::string> unused = app_->remaining();
-    if (!unused.empty() && app_->get_subcommands().empty())
-      throw UserError("slipfront: no subcommand {}; see slipfront --help", unused.front());
+    require_subcommand(app_.get());
     throw UserError("slipfront: {}; see slipfront --help", error.what());
   }
 }

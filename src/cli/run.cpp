@@ -167,6 +167,7 @@ run::SessionHooks hooks(bool quiet) {
     shown->part = part;
     shown->progress->update(step);
   };
+  pause_for_checkpoints();
   hooks.request = [] {
     if (interrupt_wanted()) return run::Request::stop;
     return checkpoint_wanted() ? run::Request::keep : run::Request::none;

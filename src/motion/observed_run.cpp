@@ -44,7 +44,7 @@ StepCallbacks ObservedRun::callbacks() {
     return nullptr;
   };
   callbacks.may_continue = [this](const SlipRates& rates) { return after_step(rates); };
-  callbacks.interrupted = is_interruption_wanted;
+  callbacks.interrupted = is_pause_wanted;
   callbacks.guaranteed_steps = [this] {
     auto n = many_steps;
     for (const auto& observer : observers_) n = std::min(n, observer->guaranteed_steps(stepper_->now()));

@@ -104,8 +104,8 @@ class TimeStepper {
   /// @throws what observer and callbacks throw; after that only start may follow.
   virtual std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
                                const StepCallbacks& callbacks) = 0;
-  /// Whether the run is to be interrupted; on all ranks the same.
-  virtual bool is_interrupted() const { return is_interruption_wanted(); }
+  /// Whether the run is to be interrupted or kept in a checkpoint; on all ranks the same.
+  virtual bool is_interrupted() const { return is_pause_wanted(); }
 
   /// Energies and works up to the last half (sub-)step.
   virtual record::Energies energies() = 0;

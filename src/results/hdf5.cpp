@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/hdf5.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -213,6 +217,54 @@ void set_attribute(const File& file, const std::string& object, const std::strin
   Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
   if (length == 1) space = Handle(H5Screate(H5S_SCALAR), H5Sclose);
   write_attribute(file, object, name, H5T_NATIVE_INT64, space, values.data());
+}
+
+static void make_scale(const File& file, const std::string& name, const std::string& label) {
+  for (const auto& [key, text] : {std::pair("CLASS", std::string("DIMENSION_SCALE")), {"NAME", label}}) {
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.get(), text.size() + 1);
+    write_attribute(file, name, key, type.get(), Handle(H5Screate(H5S_SCALAR), H5Sclose), text.c_str());
+  }
+}
+
+void make_scale(const File& file, const std::string& name) {
+  make_scale(file, name, name);
+}
+
+void create_dimension(const File& file, const std::string& name, hsize_t length) {
+  create(file, name, Type::float64, {length});
+  make_scale(file, name, fmt::format("This is a netCDF dimension but not a netCDF variable.{:10}", length));
+}
+
+static hobj_ref_t reference_to(const File& file, const std::string& name) {
+  hobj_ref_t reference = 0;
+  if (H5Rcreate(&reference, file.handle.get(), name.c_str(), H5R_OBJECT, -1) < 0) throw_write(file, name);
+  return reference;
+}
+
+void set_dimensions(const File& file, const std::vector<Dimensions>& of_all) {
+  struct Use {
+    hobj_ref_t data_set;
+    std::int32_t dimension, fill;
+  };
+  std::map<std::string, std::vector<Use>> uses;
+  const Handle list_type(H5Tvlen_create(H5T_STD_REF_OBJ), H5Tclose);
+  for (const auto& [name, scales] : of_all) {
+    std::vector<hobj_ref_t> references;
+    for (const auto& scale : scales) references.push_back(reference_to(file, scale));
+    std::vector<hvl_t> lists;
+    for (std::size_t k = 0; k < scales.size(); ++k) {
+      lists.push_back({1, &references[k]});
+      uses[scales[k]].push_back({reference_to(file, name), static_cast<std::int32_t>(k), 0});
+    }
+    write_attribute(file, name, "DIMENSION_LIST", list_type.get(), new_space({lists.size()}), lists.data());
+  }
+  const Handle use_type(H5Tcreate(H5T_COMPOUND, sizeof(Use)), H5Tclose);
+  H5Tinsert(use_type.get(), "dataset", offsetof(Use, data_set), H5T_STD_REF_OBJ);
+  H5Tinsert(use_type.get(), "dimension", offsetof(Use, dimension), H5T_NATIVE_INT32);
+  for (const auto& [scale, of_scale] : uses)
+    write_attribute(file, scale, "REFERENCE_LIST", use_type.get(), new_space({of_scale.size()}),
+                    of_scale.data());
 }
 
 void describe_root(const File& file, const Origin& origin) {

@@ -103,6 +103,18 @@ void set_ascii_attribute(const File& file, const std::string& object, const std:
 void set_attribute(const File& file, const std::string& object, const std::string& name,
                    std::span<const std::int64_t> values);
 
+/// Dimension scales as HDF5's own functions (H5DS) and netCDF make them, by which xarray opens a file.
+/// @param name  a data set, which becomes the scale of a dimension
+void make_scale(const File& file, const std::string& name);
+/// Makes a dimension without numbers of its own.
+void create_dimension(const File& file, const std::string& name, hsize_t length);
+/// Names the scales of the dimensions of data sets.
+struct Dimensions {
+  std::string data_set;
+  std::vector<std::string> scales;
+};
+void set_dimensions(const File& file, const std::vector<Dimensions>& of_all);
+
 /// Sets the attributes `program`, `version` and `units` of the root and, unless they are empty, `title` and
 /// `case`.
 void describe_root(const File& file, const Origin& origin);

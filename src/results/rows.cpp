@@ -132,10 +132,10 @@ Layout::Layout(const std::filesystem::path& path, std::uint64_t head_bytes, cons
   // Metadata first, so that they are all in the head.
   auto file = hdf5::create_file(name, path);
   hdf5::describe_root(file, origin);
-  describe(file);
   hdf5::create(file, rows.name, hdf5::Type::float64, {rows.n, rows.values});
   hdf5::set_attribute(file, rows.name, "unit", std::string("those of the data sets that show them"));
   hdf5::set_attribute(file, rows.name, "description", std::string("all numbers, as they were written"));
+  describe(file);
   hdf5::close(std::move(file));
   file = hdf5::open_file(name, path, head_bytes);
   const auto place = hdf5::reserve(file, rows.name);

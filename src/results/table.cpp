@@ -76,21 +76,34 @@ void finish(const std::filesystem::path& path, const Table& table) {
   const auto n = table.n_places();
   const auto n_rows = RowReader(path, table.row_values()).n_rows();
   const hdf5::Rows rows{rows_name, n_rows, table.row_values()};
+  // Places with a name are numbered, others are at their coordinate.
+  const std::string place = table.names.empty() ? table.axes.front().about.name : "probe", row = "row_value";
   const auto describe_all = [&](const hdf5::File& file) {
+    std::vector<hdf5::Dimensions> dimensions = {{rows_name, {table.time.name, row}}};
+    hdf5::create_dimension(file, row, table.row_values());
+    describe(file, {row.c_str(), "1", "number of a value in a row"});
     if (!table.names.empty()) {
+      hdf5::create_dimension(file, place, n);
+      describe(file, {place.c_str(), "1", "number of the probe"});
+      dimensions.push_back({"name", {place}});
       hdf5::write_texts(file, "name", table.names);
       hdf5::set_attribute(file, "name", "description", std::string("name of the probe"));
     }
     for (const auto& axis : table.axes) {
       hdf5::write(file, axis.about.name, axis.values, {n});
       describe(file, axis.about);
+      if (!table.names.empty()) dimensions.push_back({axis.about.name, {place}});
     }
+    if (table.names.empty()) hdf5::make_scale(file, place);
     hdf5::create_view(file, table.time.name, {n_rows}, rows, {{.first = 0, .n = 1}});
     describe(file, table.time);
+    hdf5::make_scale(file, table.time.name);
     for (std::size_t k = 0; k < table.fields.size(); ++k) {
       hdf5::create_view(file, table.fields[k].name, {n_rows, n}, rows, {{.first = 1 + k * n, .n = n}});
       describe(file, table.fields[k]);
+      dimensions.push_back({table.fields[k].name, {table.time.name, place}});
     }
+    hdf5::set_dimensions(file, dimensions);
   };
   Layout(path, table.head_bytes(), rows, table.origin, describe_all).finish();
 }

@@ -40,6 +40,8 @@ def test_version(program):
     [
         ([], "subcommand"),
         (["frobnicate"], "frobnicate"),
+        (["frobnicate", "--help"], "no subcommand frobnicate"),
+        (["study", "frobnicate", "--help"], "no subcommand frobnicate"),
         (["--frobnicate"], "--frobnicate"),
         (["run"], "CASE"),
         (["run", "-o", "out"], "CASE"),

@@ -110,13 +110,13 @@ def test_energies_balance(program, coarse, tmp_path):
 def test_history_is_hdf5_with_units(program, coarse, tmp_path):
     require_done(program("run", coarse, "-o", "out", "-q"))
     with h5py.File(tmp_path / "out/interface.h5") as file:
-        assert {name: file[name].attrs["unit"] for name in file if name != "rows"} == {
+        assert {name: file[name].attrs["unit"] for name in file if not name.startswith("row")} == {
             "time_s": "s", "x_m": "m", "slip_m": "m", "slip_rate_m_per_s": "m/s", "t_Pa": "Pa", "p_Pa": "Pa",
         }  # fmt: skip
         time_s, x_m = file["time_s"][:], file["x_m"][:]
         assert np.all(np.diff(time_s) > 0)
         assert np.all(np.diff(x_m) > 0)
-        assert set(file) == {"rows", "time_s", "x_m", *HISTORY_FIELDS}
+        assert set(file) == {"rows", "row_value", "time_s", "x_m", *HISTORY_FIELDS}
         for name in HISTORY_FIELDS:
             assert file[name].shape == (len(time_s), len(x_m))
             assert np.all(np.isfinite(file[name][:]))
@@ -239,6 +239,19 @@ def test_a_checkpoint_on_demand_is_told(program, coarse, tmp_path):
     process.send_signal(signal.SIGTERM)
     note = r"^note: checkpoint at t = \S+ s of the event$"
     assert len(re.findall(note, finished(process).stderr, re.MULTILINE)) == 1
+
+
+def test_a_checkpoint_on_demand_is_made_at_once(program, coarse, tmp_path):
+    """Behind the step at which it is asked for, not behind the next of each 50 at which others are made."""
+    process = program.start("run", coarse, "-o", "out", *sets("plate.element_size_m=1e-3"), *LONG)
+    wait_until((tmp_path / "out/unfinished/energy.csv").exists, process)
+    for _ in range(4):
+        process.send_signal(signal.SIGUSR1)
+        time.sleep(0.1)
+    process.send_signal(signal.SIGTERM)
+    told = re.findall(r"^note: checkpoint at t = (\S+) s", finished(process).stderr, re.MULTILINE)
+    step_s = run_json(tmp_path / "out/unfinished")["dt_s"]
+    assert any(round(float(t_s) / step_s) % 50 for t_s in told)
 
 
 @pytest.mark.parametrize(

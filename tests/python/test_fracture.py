@@ -483,6 +483,19 @@ def test_histories_refused(history, said):
         slipfront.fracture_of_history(history, fronts, BODIES)
 
 
+def test_predictions_and_notes_are_kept_in_netcdf(tmp_path):
+    history = made_history()
+    fronts = slipfront.find_fronts_in_history(history, settings=MADE)
+    found = slipfront.fracture_of_history(changed(slip_m=0.5 * history["slip_m"]), fronts, BODIES)
+    assert len(found.notes) == 2
+    predicted = slipfront.predict_fronts(CASE)
+    for data in (found, predicted):
+        data.to_netcdf(tmp_path / "made.nc", engine="h5netcdf")
+        with xr.open_dataset(tmp_path / "made.nc", engine="h5netcdf") as kept:
+            assert kept.equals(data)
+            np.testing.assert_equal(np.atleast_1d(kept.attrs["notes"]), np.atleast_1d(data.attrs["notes"]))
+
+
 def test_units_and_fronts_refused():
     history = made_history()
     fronts = slipfront.find_fronts_in_history(history, settings=MADE)

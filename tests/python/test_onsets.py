@@ -59,6 +59,14 @@ def test_a_file_of_matlab(tmp_path):
         slipfront.read_onsets(file)
 
 
+def test_no_record_is_refused(tmp_path):
+    with pytest.raises(slipfront.CaseError, match="file is None; it must be a path"):
+        slipfront.read_onsets(None)
+    (tmp_path / "empty.csv").write_text("")
+    with pytest.raises(slipfront.Error, match=r"empty\.csv: empty"):
+        slipfront.read_onsets(tmp_path / "empty.csv")
+
+
 @pytest.mark.parametrize(
     ("times", "mark", "never"),
     [

@@ -92,6 +92,10 @@ def test_what_no_case_may_hold_is_refused(case, said):
         ({"progress": 5}, "progress is 5; it must be True or False"),
         ({"friction": 5}, "friction is a table"),
         ({"output": 5}, "output is 5"),
+        (
+            {"observers": None},
+            "observers is None; it must be a list of pairs of an interval, s, and a function",
+        ),
     ],
 )
 def test_options_of_a_run(arguments, said):

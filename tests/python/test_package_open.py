@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 import slipfront
+import xarray as xr
 from package_cases import CASE, program, write_case
 from slipfront.units import unit_of
 
@@ -46,6 +47,30 @@ def test_the_history_is_the_files_and_read_when_used(folder):
         assert np.array_equal(history.x_m, file["x_m"])
     picked = history.slip_m.sel(x_m=[0.1, 0.05], method="nearest").isel(time_s=[5, 2, 2])
     assert np.array_equal(picked, history.slip_m.values[[5, 2, 2]][:, [20, 10]])
+
+
+def test_results_are_found_from_another_working_folder(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(folder.parent)
+    run = slipfront.open("out")
+    monkeypatch.chdir(tmp_path)
+    assert run.history.slip_m.values.shape == (run.history.sizes["time_s"], run.history.sizes["x_m"])
+    assert run.fronts.sizes["point"] > 0
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    # An observer may change it, too.
+    moves = [(1.0, lambda state: monkeypatch.chdir(elsewhere))]
+    made = slipfront.run(CASE, output="made", observers=moves)
+    assert made.folder == tmp_path / "made" and made.fronts.sizes["point"] > 0
+
+
+def test_netcdf_finds_the_dimensions(folder):
+    with xr.open_dataset(folder / "interface.h5", engine="h5netcdf") as found:
+        history = slipfront.open(folder).history
+        assert found.slip_m.dims == ("time_s", "x_m") and found.rows.dims == ("time_s", "row_value")
+        for name in ("time_s", "x_m", "slip_m", "p_Pa"):
+            assert np.array_equal(found[name], history[name])
+    with h5py.File(folder / "interface.h5") as file:
+        assert file["t_Pa"].dims[1].keys() == ["x_m"] and file["x_m"].is_scale
 
 
 def test_tables_are_the_files(folder):
