@@ -30,7 +30,7 @@ PROGRAM := $(BUILD)/slipfront
 # Whether warnings are errors: ON in continuous integration, whose compilers are known.
 WERROR ?= OFF
 
-.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz fuzz-cases sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices andrews1976 bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz fuzz-cases sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -186,6 +186,9 @@ open-choices: ready  ## what the paper leaves open, varied: renews papers/kammer
 	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices $(PAPER)/figures/open_choices.png $(RESULTS)-open-choices
 	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices $(PAPER)/open-choices.md
+
+andrews1976: ready module  ## when ruptures pass c_S, after Andrews: renews papers/andrews1976/transition.png
+	PYTHONPATH=python $(PYTHON) papers/andrews1976/claims.py papers/andrews1976
 
 bases: ready  ## the paper's events on deformable bases: renews papers/kammer2012/bases.md and its figure
 	$(PROGRAM) study base -o $(RESULTS)-bases --overwrite
