@@ -168,7 +168,12 @@ def summary(fronts: xr.Dataset, of_waves: dict[str, float]) -> list[str]:
         ", ".join(f"{name} {used[name]:.4g}" for name in LENGTHS_AND_TIMES)
         + (f"; intervals of speeds: times right to half of {step:.4g} s" if step > 0 else "")
     )
-    return [in_words(line) for line in [*(lines if ends.size else ["no fronts", *lines]), *used["notes"]]]
+    notes = list(used["notes"])
+    if "c_L" in of_waves and (speeds[:, 0] > of_waves["c_L"]).any():
+        notes.append(
+            "a speed is above c_L: check the units of x and time; onsets may not be those of one front"
+        )
+    return [in_words(line) for line in [*(lines if ends.size else ["no fronts", *lines]), *notes]]
 
 
 def main(arguments: list[str]) -> int:

@@ -353,7 +353,12 @@ def require(holds: Any, file: Path, what: str) -> None:
 
 def require_ascending(file: Path, name: str, values: np.ndarray) -> None:
     require(np.isfinite(values), file, f"a value of {name} is missing or not finite")
-    require(np.diff(values) > 0, file, f"{name} does not ascend")
+    falls = np.flatnonzero(~(np.diff(values) > 0))
+    if len(falls):
+        before, after = values[falls[0]], values[falls[0] + 1]
+        raise DataError(
+            f"{file}: {name} does not ascend: {after:.6g} follows {before:.6g}; sort, one row for each"
+        )
 
 
 def read_static(file: Path) -> dict[str, np.ndarray]:

@@ -78,7 +78,7 @@ def no_tip(gauge: Gauge, why: str, doubts: list[str], limit: float, unchanged: s
     said = f"no tip is found: {change}; {why}" if change else f"no front passes: {unchanged}{why}"
     return TipFit(
         gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0,
-        [said, *doubts, *flat_tops_within(gauge, -np.inf, np.inf), *gauge.doubts],
+        [said, *flat_tops_within(gauge, -np.inf, np.inf), *doubts, *gauge.doubts],
         np.empty(0), {},
     )  # fmt: skip
 
@@ -87,8 +87,9 @@ def flat_tops_within(gauge: Gauge, from_s: float, to_s: float) -> list[str]:
     """A doubt where there are any: of the longest."""
     inside = [f for f in gauge.flat_s if f[0] <= to_s and f[1] >= from_s]
     first_s, last_s = max(inside, key=lambda f: f[1] - f[0], default=(0.0, 0.0))
-    told = f"the record is flat at its end from {1e6 * first_s:.4g} to {1e6 * last_s:.4g} us"
-    return [f"{told}, as of an amplifier at its limit"] if inside else []
+    told = f"the record is flat at an extreme from {1e6 * first_s:.4g} to {1e6 * last_s:.4g} us"
+    then = "leave that component out, or that time by window_s"
+    return [f"{told}, as of an amplifier at its limit: {then}"] if inside else []
 
 
 def largest_change(gauge: Gauge, limit: float) -> str:

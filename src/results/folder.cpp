@@ -274,10 +274,15 @@ bool is_own_publication(const fs::path& publishing) {
 /// Refuses what this program makes nowhere: links, pipes and other kinds, at any depth.
 void require_files_and_folders(const fs::path& path) {
   std::error_code error;
-  if (files::is_folder(path))
+  if (files::is_folder(path)) {
     for (const auto& name : names_in(path)) require_files_and_folders(path / name);
-  else if (!fs::is_regular_file(fs::symlink_status(path, error)))
-    throw_foreign(path, "file");
+    return;
+  }
+  if (!fs::is_regular_file(fs::symlink_status(path, error))) throw_foreign(path, "file");
+  if (const auto names = fs::hard_link_count(path, error); !error && names > 1)
+    throw UserError(
+        "{}: has another name, a hard link, whose contents would change with it; put a copy in its place",
+        path.string());
 }
 
 /// Refuses what has the name of this program's own work, or is in it, but is not.
@@ -293,6 +298,8 @@ void require_own(const fs::path& path, bool (*is_own)(const fs::path&)) {
 ResultFolder::ResultFolder(const fs::path& dir, std::string work, const ResultFolder* within)
     : dir_(within == nullptr ? files::resolved(dir) : dir), work_(std::move(work)) {
   try {
+    // Before anything is made in it: a part is a folder of the work, nowhere else.
+    if (within != nullptr && files::is_there(dir_) && !files::is_folder(dir_)) throw_foreign(dir_, "folder");
     make(within);
     lock();
     require_own(unfinished(), is_own_work);

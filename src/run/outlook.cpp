@@ -184,7 +184,7 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Insid
         "the residual strength {} is nowhere below {}: a rupture finds no energy beyond its trigger",
         inside.over_pressure("mu_k"), inside.t())};
   std::vector<std::string> doubts;
-  if (of.n_barriers == of.n_nodes)
+  if (of.n_barriers == of.n_nodes && !config.friction.has_state())
     doubts.emplace_back("S is beyond 10 at all nodes: no front breaks such strength");
   if (auto doubt = doubt_of_length(config, o); !doubt.empty()) doubts.push_back(std::move(doubt));
   return doubts;

@@ -130,6 +130,8 @@ def test_laws_with_a_state_borrow_nothing_from_others(program, write_case):
     for law in ("aging", "slip"):
         printed[law] = require_done(program("info", case, *sets(f"friction.law=rate_and_state_{law}"))).stdout
         assert "S < 1.77" not in printed[law]
+        low = sets(f"friction.law=rate_and_state_{law}", "prestress.t_Pa=0.5e6")
+        assert "S is beyond" not in require_done(program("validate", case, *low)).stdout
     assert "Rubin, Ampuero 2005" in line_of(printed["aging"], "nucleation length")
     assert line_of(printed["slip"], "nucleation length").startswith("unknown")
 

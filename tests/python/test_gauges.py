@@ -323,7 +323,7 @@ def clipped(gauge, share):
 
 def test_flat_tops_are_doubted():
     """Before a filter and behind it, and in the rest that a passage leaves; other values have their own."""
-    whole, flat = record(noise=1e-6), "the record is flat at its end from "
+    whole, flat = record(noise=1e-6), "the record is flat at an extreme from "
     gauge = clipped(whole, 0.4)
     fit = slipfront.fit_tip(gauge, EQUAL)
     assert fit.Gamma_J_per_m2 < 0.6 * GAMMA and any(doubt.startswith(flat) for doubt in fit.doubts)

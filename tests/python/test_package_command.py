@@ -67,6 +67,15 @@ def test_only_its_own_table_is_replaced(onsets, tmp_path, capsys):
     assert (onsets.read_text(), other.read_text()) == (before, "mine")
 
 
+def test_a_speed_above_the_longitudinal_one_is_told(tmp_path, capsys):
+    """Milliseconds under the name of microseconds."""
+    file = tmp_path / "onsets.csv"
+    file.write_text("x_m,time_us\n0,0\n0.1,0.05\n0.2,0.1\n0.3,0.15\n")
+    material = ["--youngs-modulus-pa", "60e9", "--poissons-ratio", "0.25", "--density-kg-per-m3", "2650"]
+    assert fronts_command.main([str(file), *material]) == 0
+    assert "a speed is above c_L: check the units of x and time" in capsys.readouterr().out
+
+
 def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, tmp_path):
     lines = onsets.read_text().splitlines()
     text = "\n".join([lines[1] + ",t_s_Pa,p_s_Pa", *(f"{line},3e6,4e6" for line in lines[2:])]) + "\n"
@@ -83,7 +92,7 @@ def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, t
     "text, options, message",
     [
         ("x_m,time_s\n0,0\n", [], "fewer than two rows"),
-        ("x_m,time_s\n0,0\n0,1\n", [], "x_m does not ascend"),
+        ("x_m,time_s\n0,0\n0,1\n", [], "x_m does not ascend: 0 follows 0"),
         ("x_m,time_s\n0,\n1,\n", [], "no row has a time: nothing slips"),
         (
             "x_m,time\n0,0\n1,1\n",

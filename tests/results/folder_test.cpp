@@ -102,6 +102,26 @@ TEST_F(ResultFolders, LinksAndPipesInUnfinishedWorkAreRefusedAtAnyDepth) {
   EXPECT_THAT(names_below(folder_ / "elsewhere"), UnorderedElementsAre("run.json"));
 }
 
+TEST_F(ResultFolders, FilesWithAnotherNameAreNotWrittenOn) {
+  const auto dir = folder_ / "out";
+  leave_unfinished(dir, "one");
+  test::write_file(dir / "unfinished/run.json", "mine");
+  fs::create_hard_link(dir / "unfinished/run.json", folder_ / "copy");
+  EXPECT_THAT(error_of([&] { const ResultFolder again(dir, "one"); }),
+              HasSubstr("run.json: has another name"));
+  EXPECT_TRUE(fs::exists(dir / "unfinished/run.json"));
+}
+
+TEST_F(ResultFolders, APartIsNotMadeThroughALink) {
+  const ResultFolder whole(folder_ / "out", "one");
+  fs::create_directories(whole.unfinished());
+  fs::create_directories(folder_ / "elsewhere");
+  fs::create_directory_symlink(folder_ / "elsewhere", whole.unfinished() / "part");
+  EXPECT_THAT(error_of([&] { const ResultFolder part(whole.unfinished() / "part", "one", &whole); }),
+              HasSubstr("is not a folder of slipfront"));
+  EXPECT_TRUE(fs::is_empty(folder_ / "elsewhere"));
+}
+
 TEST_F(ResultFolders, WorkOfAnotherKindIsNotResumed) {
   leave_unfinished(folder_.path(), "one");
   ResultFolder other(folder_.path(), "another");
