@@ -2,6 +2,7 @@
 #include "results/results.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,13 +24,13 @@ constexpr std::size_t text_bytes_at_once = std::size_t{1} << 18U;
 /// A CSV file, field by field.
 class Csv {
  public:
-  Csv(std::filesystem::path file, const std::string& header, Numbers numbers, files::OutputFile& output)
-      : file_(std::move(file)), numbers_(numbers), text_(header + "\n"), output_(output) {
-    for (std::size_t k = 0, end = 0; k <= header.size(); k = end + 1) {
-      end = std::min(header.find(',', k), header.size());
-      columns_.push_back(header.substr(k, end - k));
-    }
-  }
+  Csv(std::filesystem::path file, std::vector<std::string> columns, Numbers numbers,
+      files::OutputFile& output)
+      : file_(std::move(file)),
+        columns_(std::move(columns)),
+        numbers_(numbers),
+        text_(fmt::format("{}\n", fmt::join(columns_, ","))),
+        output_(output) {}
   /// @param missing  what the field holds where nothing is known of it: not a number where it may be empty
   void add(double value, double missing = 0) {
     if (numbers_ == Numbers::finite && !std::isfinite(value) && !(std::isnan(value) && std::isnan(missing)))
@@ -49,17 +50,17 @@ class Csv {
 
  private:
   std::filesystem::path file_;
+  std::vector<std::string> columns_;
   Numbers numbers_;
   std::string text_;
   files::OutputFile& output_;
-  std::vector<std::string> columns_;
   std::size_t column_ = 0;
 };
 
-void write_csv(const std::filesystem::path& file, const std::string& header, Numbers numbers,
+void write_csv(const std::filesystem::path& file, const std::vector<std::string>& columns, Numbers numbers,
                const std::function<void(Csv&)>& add_rows) {
   files::write_text(file, [&](files::OutputFile& output) {
-    Csv csv(file, header, numbers, output);
+    Csv csv(file, columns, numbers, output);
     add_rows(csv);
     csv.hand_over();
   });
@@ -78,9 +79,9 @@ void write_static(const std::filesystem::path& file, const record::StaticState& 
                   std::span<const NamedColumn> further) {
   SLIPFRONT_ASSERT(state.t_s_Pa.size() == state.x_m.size() && state.p_s_Pa.size() == state.x_m.size(),
                    "columns of the static state differ in length");
-  std::string header = "x_m,t_s_Pa,p_s_Pa";
-  for (const NamedColumn& column : further) header += fmt::format(",{}", column.name);
-  write_csv(file, header, Numbers::finite, [&](Csv& csv) {
+  std::vector<std::string> columns = {"x_m", "t_s_Pa", "p_s_Pa"};
+  for (const NamedColumn& column : further) columns.emplace_back(column.name);
+  write_csv(file, columns, Numbers::finite, [&](Csv& csv) {
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
       for (const double value : {state.x_m[i], state.t_s_Pa[i], state.p_s_Pa[i]}) csv.add(value);
       for (const NamedColumn& column : further) csv.add(column.values.at(i), nan);
@@ -90,10 +91,10 @@ void write_static(const std::filesystem::path& file, const record::StaticState& 
 
 void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies,
                     Numbers numbers) {
-  std::string header = record::energy_time.name;
-  for (const auto& term : record::energy_terms) header += fmt::format(",{}", term.name);
-  header += fmt::format(",{}", record::imbalance_name);
-  write_csv(file, header, numbers, [&](Csv& csv) {
+  std::vector<std::string> columns = {record::energy_time.name};
+  for (const auto& term : record::energy_terms) columns.emplace_back(term.name);
+  columns.emplace_back(record::imbalance_name);
+  write_csv(file, columns, numbers, [&](Csv& csv) {
     for (const auto& e : energies) {
       csv.add(e.time_s);
       for (const auto& term : record::energy_terms) csv.add(e.*term.member);
@@ -104,12 +105,12 @@ void write_energies(const std::filesystem::path& file, std::span<const record::E
 
 void write_loading(const std::filesystem::path& file, std::span<const record::LoadingRow> rows,
                    Numbers numbers) {
-  std::string header = "event,phase";
-  for (const auto& column : record::loading_fields) header += fmt::format(",{}", column.name);
-  for (const auto& term : record::energy_terms) header += fmt::format(",{}", term.name);
-  header += fmt::format(",{},{}", record::wave_loss.name, record::imbalance_name);
+  std::vector<std::string> columns = {"event", "phase"};
+  for (const auto& column : record::loading_fields) columns.emplace_back(column.name);
+  for (const auto& term : record::energy_terms) columns.emplace_back(term.name);
+  columns.insert(columns.end(), {record::wave_loss.name, record::imbalance_name});
   const record::LoadingRow unknown;
-  write_csv(file, header, numbers, [&](Csv& csv) {
+  write_csv(file, columns, numbers, [&](Csv& csv) {
     for (const auto& row : rows) {
       csv.add(fmt::format("{}", row.n_events));
       csv.add(record::name(row.phase));
@@ -123,10 +124,10 @@ void write_loading(const std::filesystem::path& file, std::span<const record::Lo
 
 void write_events(const std::filesystem::path& file, std::span<const record::SequenceEvent> events,
                   Numbers numbers) {
-  std::string header = "event";
-  for (const auto& column : record::sequence_event_fields) header += fmt::format(",{}", column.name);
+  std::vector<std::string> columns = {"event"};
+  for (const auto& column : record::sequence_event_fields) columns.emplace_back(column.name);
   const record::SequenceEvent unknown;
-  write_csv(file, header, numbers, [&](Csv& csv) {
+  write_csv(file, columns, numbers, [&](Csv& csv) {
     for (std::size_t k = 0; k < events.size(); ++k) {
       csv.add(fmt::format("{}", k + 1));
       for (const auto& column : record::sequence_event_fields)
@@ -136,10 +137,10 @@ void write_events(const std::filesystem::path& file, std::span<const record::Seq
 }
 
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts, Numbers numbers) {
-  constexpr const char* header =
-      "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
-      "U_s_J_per_m3,U_r_J_per_m3,speed_kind";
-  write_csv(file, header, numbers, [&](Csv& csv) {
+  const std::vector<std::string> columns = {
+      "front_id", "x_m",    "onset_s", "direction", "v_tip_m_per_s", "t_s_Pa",       "p_s_Pa",
+      "t_d_Pa",   "p_d_Pa", "t_r_Pa",  "p_r_Pa",    "U_s_J_per_m3",  "U_r_J_per_m3", "speed_kind"};
+  write_csv(file, columns, numbers, [&](Csv& csv) {
     for (const fronts::Front& front : fronts)
       for (const fronts::FrontPoint& point : front.points) {
         csv.add(fmt::format("{}", front.id));
@@ -157,10 +158,10 @@ void write_fronts(const std::filesystem::path& file, std::span<const fronts::Fro
 
 void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
                     const fracture::Recorded& recorded, const fracture::Bodies& bodies, Numbers numbers) {
-  std::string header = "front_id,x_m,onset_s,direction,v_tip_m_per_s";
-  for (const auto& column : record::breakdown_fields) header += fmt::format(",{}", column.name);
-  for (const auto& column : fracture::passage_fields) header += fmt::format(",{}", column.name);
-  write_csv(file, header, numbers, [&](Csv& csv) {
+  std::vector<std::string> columns = {"front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s"};
+  for (const auto& column : record::breakdown_fields) columns.emplace_back(column.name);
+  for (const auto& column : fracture::passage_fields) columns.emplace_back(column.name);
+  write_csv(file, columns, numbers, [&](Csv& csv) {
     for (const auto& front : fronts) {
       const auto passages = fracture::passages(front, recorded, bodies);
       for (std::size_t k = 0; k < passages.size(); ++k) {

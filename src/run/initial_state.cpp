@@ -188,9 +188,8 @@ void require_steady_friction(const input::Case& config, const mesh::Mesh& plate)
       const double coefficient = interface::friction_coefficient(law, V_m_per_s, 0);
       if (!(coefficient > 0))
         throw UserError(
-            "the coefficient of steady sliding, by {} and {}, is {:.4g} at {:.3g} m/s; it must be above 0 up "
-            "to "
-            "the rate of a front's tip, {:.3g} m/s",
+            "the coefficient of steady sliding, by {} and {}, is {:.4g} at {:.3g} m/s; it must be above 0 "
+            "up to the rate of a front's tip, {:.3g} m/s",
             Key("friction.f0"), Key("friction.b"), coefficient, V_m_per_s, to);
     }
 }
@@ -209,8 +208,7 @@ void require_rate_of_events(const input::Case& config) {
   if (rate_m_per_s <= load_m_per_s)
     throw UserError(
         "{} is {:.4g} m/s, not above the speed of the load, {:.4g} m/s: steady sliding would be an event; "
-        "choose "
-        "a larger one, or a slower load ({}, {})",
+        "choose a larger one, or a slower load ({}, {})",
         key, rate_m_per_s, load_m_per_s, speed, Key("sequence.times_s"));
 }
 
@@ -229,8 +227,7 @@ void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate
   }
   throw UserError(
       "friction does not weaken with the slip rate at any node (a >= b), at rest or at the load's speed: "
-      "slip "
-      "stays slow, and no event comes; choose {}, or a larger {}",
+      "slip stays slow, and no event comes; choose {}, or a larger {}",
       Key("sequence.end_s"), Key("friction.b"));
 }
 

@@ -681,8 +681,7 @@ Equilibrium Statics::shear_to(double share) const {
   if (!reached)
     throw UserError(
         "no shear brings t/p inside the interface to {}, a tall plate tips before; reduce {} or {}, or "
-        "change "
-        "the tilt or {}",
+        "change the tilt or {}",
         name_of_ratio(share), Key(mu_s_key_), Key("plate.height_m"), Key("loading.edge_margin_m"));
   // Slip at mu_s p that has spread from an edge past the margin would itself count as the peak.
   const double ratio = ratio_at_peak(e, share);
