@@ -29,6 +29,8 @@ NAN = float("nan")
 LENGTHS_AND_TIMES = ("l_star_m", "arrest_time_s", "min_length_m")  # of FrontSettings
 DIGITS = 7  # of times at most, behind which rounding begins
 WAITS = 5  # of a tip, in times that a front of the record takes for its least length
+NORMAL_95 = 1.96  # standard errors to each side that hold 95 %
+UNEVEN = 10  # speeds within a front that differ as many times are those of no line
 # Student's t for 95 %, in standard errors to each side, of 1, 2, ... degrees of freedom; the last for more.
 STUDENT_T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
@@ -179,7 +181,8 @@ def fitted_speed(
     run_m: np.ndarray, onset_s: np.ndarray, step_s: float, errors: tuple[float, float] | None
 ) -> tuple[float, float, float]:
     """Speed of the line through onset over distance run, and its interval: what times wrong by up to half
-    a step on either side can make of it, or, where that is wider, 95 % by the scatter about the line."""
+    a step on either side can make of it, or, where that is wider, 95 % by the scatter about the line or by
+    the errors."""
     if len(run_m) < 2:
         return NAN, NAN, NAN
     x, t = run_m - run_m.mean(), onset_s - onset_s.mean()
@@ -190,7 +193,9 @@ def fitted_speed(
     if (freedom := len(x) - 2) > 0:
         error = float(np.sqrt(scatter @ scatter / freedom / (x @ x)))
         half = max(half, STUDENT_T[min(freedom, len(STUDENT_T)) - 1] * error)
-    elif half == 0:  # nothing tells how wrong two times are
+    if errors is not None:
+        half = max(half, NORMAL_95 * float(np.hypot(errors[1], slope * errors[0]) / np.sqrt(x @ x)))
+    if half == 0 and freedom == 0:  # nothing tells how wrong two times are
         half = float("inf")
     if not slope > 0:
         return NAN, NAN, NAN
@@ -228,6 +233,23 @@ def errors_of(place_m: float | None, time_s: float | None) -> tuple[float, float
     if not any(made):
         raise CaseError("place_error_m and time_error_s are both 0: give one of them above it, or neither")
     return made[0], made[1]
+
+
+def doubts_of_speeds(fronts: xr.Dataset) -> list[str]:
+    """Fronts whose line says little."""
+    doubts = []
+    for k, part in enumerate(slices_of(fronts)):
+        v = fronts["v_tip_m_per_s"].to_numpy()[part]
+        v = v[np.isfinite(v) & (v > 0)]
+        if part.stop - part.start == 2:
+            doubts.append(
+                f"front {k}: two onsets make its speed, nothing tells whether they are of one front"
+            )
+        elif v.size and v.max() >= UNEVEN * v.min():
+            doubts.append(
+                f"front {k}: v_tip is {v.min():.3g} to {v.max():.3g} m/s: no one speed is that of the front"
+            )
+    return doubts
 
 
 def notes_of_record(onset_s: np.ndarray, fronts: xr.Dataset, settings: FrontSettings) -> list[str]:
@@ -291,7 +313,7 @@ def find_fronts(
     Returns a Dataset over `point` (front_id, x_m, onset_s, v_tip_m_per_s, ...) and `front`: direction, mode,
     end (arrest, meets_front, contact_end, record_edge, record_end), speed_m_per_s of the line through its
     own onsets with speed_low_m_per_s and speed_high_m_per_s. Attributes: the settings used; `notes`, how many
-    places never slip and how many onsets are in no front, and why."""
+    places never slip, how many onsets are in no front, and why, and fronts whose line says little."""
     x, onset = array(x_m, "x_m", finite=True), array(onset_s, "onset_s")
     t_s = np.full_like(x, np.nan) if t_s_Pa is None else array(t_s_Pa, "t_s_Pa")
     p_s = np.ones_like(x) if p_s_Pa is None else array(p_s_Pa, "p_s_Pa")
@@ -321,7 +343,10 @@ def find_fronts(
     step = time_step_s(x, onset) if resolution_s is None else resolution
     add_speeds(found, step, errors)
     found.attrs = {name: getattr(used, name) for name in LENGTHS_AND_TIMES}
-    found.attrs |= {"time_step_s": step, "notes": [*notes, *notes_of_record(onset, found, used)]}
+    found.attrs |= {
+        "time_step_s": step,
+        "notes": [*notes, *notes_of_record(onset, found, used), *doubts_of_speeds(found)],
+    }
     return found
 
 

@@ -74,7 +74,7 @@ std::string line_of(const run::FracturePrediction& p, const fracture::PredictedF
   if (fastest == 0)
     return to + fmt::format("does not run: G {:.3g} J/m2, fracture energy {:.3g}\n", last.G_static_J_per_m2,
                             last.fracture_energy_J_per_m2);
-  const auto runs = to + fmt::format("from {:.4f} m, at most {:.0f} m/s, {:.2f} c_S, ",
+  const auto runs = to + fmt::format("from {:.4f} m, at most {:.4g} m/s, {:.2g} c_S, ",
                                      front.points.front().x_m, fastest, fastest / c_S);
   if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
   if (!p.foretells_arrest(front))

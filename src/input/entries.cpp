@@ -682,9 +682,11 @@ void add_sequence(Entries& all) {
                "healed at once");
   sequence.add("healing_time_s", &Sequence::healing_time_s, above(0), "t_0 of it");
   sequence.only_with = in_slow_sequence();
-  sequence.optional("inertia_slip_rate_m_per_s", &Sequence::inertia_slip_rate_m_per_s, above(0), 1e-3,
-                    "slip rate of the fastest node at which an event begins; it ends when for time.quiet_s "
-                    "none is faster than half of it. Without it a tenth of friction.tip_slip_rate_m_per_s");
+  sequence.optional(
+      "inertia_slip_rate_m_per_s", &Sequence::inertia_slip_rate_m_per_s, above(0), 1e-3,
+      "slip rate of the fastest node at which an event begins; it ends when for time.quiet_s "
+      "none is faster than half of it. Without it a tenth of friction.tip_slip_rate_m_per_s, and of "
+      "no more than where radiation takes over");
 }
 
 void add_time(Entries& all) {

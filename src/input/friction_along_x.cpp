@@ -229,17 +229,21 @@ Case with_friction_at(Case config, const std::vector<double>& x_m, const std::ve
   return config;
 }
 
-double tip_slip_rate_m_per_s(const Case& config) {
-  if (config.tip_slip_rate_m_per_s) return *config.tip_slip_rate_m_per_s;
+double radiation_slip_rate_m_per_s(const Case& config) {
   double admittance = solid::shear_admittance_m_per_Pa_s(config.material);
   if (has_base_body(config)) admittance += solid::shear_admittance_m_per_Pa_s(base_material(config));
-  return std::max(admittance * config.friction.parameter("a") * nominal_pressure_Pa(config),
-                  10 * config.friction.parameter("V_i_m_per_s"));
+  return admittance * config.friction.parameter("a") * nominal_pressure_Pa(config);
+}
+
+double tip_slip_rate_m_per_s(const Case& config) {
+  return config.tip_slip_rate_m_per_s.value_or(
+      std::max(radiation_slip_rate_m_per_s(config), 10 * config.friction.parameter("V_i_m_per_s")));
 }
 
 double inertia_slip_rate_m_per_s(const Case& config) {
-  constexpr double of_tip = 0.1;
-  return config.sequence.inertia_slip_rate_m_per_s.value_or(of_tip * tip_slip_rate_m_per_s(config));
+  constexpr double share = 0.1;
+  return config.sequence.inertia_slip_rate_m_per_s.value_or(
+      share * std::min(radiation_slip_rate_m_per_s(config), tip_slip_rate_m_per_s(config)));
 }
 
 double slow_slip_rate_m_per_s(const Case& config) {

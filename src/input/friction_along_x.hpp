@@ -24,12 +24,16 @@ std::vector<interface::FrictionLaw> friction_at(const Case& config, const std::v
 Case with_friction_at(Case config, const std::vector<double>& x_m,
                       const std::vector<interface::FrictionLaw>& laws);
 
-/// Slip rate beyond which a node under a law that never sticks counts as slipping: the case's, or where the
-/// direct effect a p/V is as steep as the bodies' radiation damping, at least 10 V_i.
+/// Slip rate at which the direct effect a p/V is as steep as the bodies' radiation damping: inertia limits
+/// faster slip.
+/// @pre the law has a state
+double radiation_slip_rate_m_per_s(const Case& config);
+/// Slip rate beyond which a node under a law that never sticks counts as slipping: the case's, or that of
+/// radiation, at least 10 V_i.
 /// @pre the law has a state
 double tip_slip_rate_m_per_s(const Case& config);
-/// Slip rate of the fastest node at which an event begins in a sequence of a law with a state, and up to
-/// which equilibria follow it: half of that.
+/// Slip rate of the fastest node at which an event begins in a sequence of a law with a state, the case's or a
+/// tenth of both of these, and up to which equilibria follow it: half of that.
 double inertia_slip_rate_m_per_s(const Case& config);
 double slow_slip_rate_m_per_s(const Case& config);
 

@@ -16,7 +16,8 @@ LawDescription describe_law() {
   for (const auto& p : Law::parameters()) description.parameters.push_back({p.key, p.min, p.max, p.help});
   if constexpr (!HasState<Law>)
     description.parameters.push_back(
-        {FrictionLaw::cohesion_key, 0, 1e15, "strength in contact besides mu p, before and after slip"});
+        {FrictionLaw::cohesion_key, 0, 1e15,
+         "strength in contact besides mu p, before and after slip; with loading.method = prestress"});
   if constexpr (requires { Law::lists(); })
     for (const auto& list : Law::lists())
       description.lists.push_back({list.key, list.min, list.max, list.help});

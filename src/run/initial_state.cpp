@@ -198,12 +198,14 @@ void require_steady_friction(const input::Case& config, const mesh::Mesh& plate)
 void require_rate_of_events(const input::Case& config) {
   const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_over_c_L");
   const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
-  const double tip_m_per_s = input::tip_slip_rate_m_per_s(config);
-  if (rate_m_per_s > tip_m_per_s)
+  const double most_m_per_s =
+      std::min(input::radiation_slip_rate_m_per_s(config), input::tip_slip_rate_m_per_s(config));
+  if (rate_m_per_s > most_m_per_s)
     throw UserError(
-        "{} is {:.4g} m/s, beyond the rate of a front's tip, {:.4g} m/s: fronts would be slow slip, and "
-        "no event; choose a smaller one",
-        key, rate_m_per_s, tip_m_per_s);
+        "{} is {:.4g} m/s, beyond the rate of a front's tip or of radiation, {:.4g} m/s: fronts would be "
+        "slow "
+        "slip, and no event; choose a smaller one",
+        key, rate_m_per_s, most_m_per_s);
   const double load_m_per_s = std::max(LoadingPath(config).fastest_m_per_s(), top_speed_m_per_s(config));
   if (rate_m_per_s <= load_m_per_s)
     throw UserError(

@@ -59,7 +59,7 @@ void add_odd_units(const NamedMaterial& body, double width_m, Notes& notes) {
              notes);
   if (m.poissons_ratio < -0.99)
     add_note(table + ".poissons_ratio", m.poissons_ratio,
-             "near -1 the body hardly resists a change of shape beside one of volume, and rounding grows",
+             "near -1 the body hardly resists a change of volume beside one of shape, and rounding grows",
              notes);
   const double damping_length_m = m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
   if (damping_length_m > 0.1 * width_m)
@@ -178,7 +178,7 @@ void add_sequence(const input::Case& config, Notes& notes) {
       load_m_per_s * solid::shear_modulus_Pa(config.material) / solid::shear_speed_m_per_s(config.material);
   const double strength_Pa =
       interface::static_coefficient(config.friction) * input::nominal_pressure_Pa(config);
-  if (wave_Pa > most_of_strength * strength_Pa)
+  if (strength_Pa > 0 && wave_Pa > most_of_strength * strength_Pa)
     notes.push_back(fmt::format(
         "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: between events it is "
         "taken for static, and in them it works; are {} slow enough?",

@@ -184,15 +184,15 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Insid
         "the residual strength {} is nowhere below {}: a rupture finds no energy beyond its trigger",
         inside.over_pressure("mu_k"), inside.t())};
   std::vector<std::string> doubts;
-  if (of.n_barriers == of.n_nodes && !config.friction.has_state())
+  if (of.n_barriers == of.n_nodes)
     doubts.emplace_back("S is beyond 10 at all nodes: no front breaks such strength");
   if (auto doubt = doubt_of_length(config, o); !doubt.empty()) doubts.push_back(std::move(doubt));
   return doubts;
 }
 
-std::string caution_of_mesh(double zone_elements, bool may_pass_c_S, bool has_state) {
-  const auto is =
-      fmt::format("the process zone has {:.3g} elements at rest and fewer in motion", zone_elements);
+std::string caution_of_mesh(double zone_elements, bool may_pass_c_S, bool has_state, bool nominal) {
+  const auto is = fmt::format("the process zone has {:.3g} elements at rest and fewer in motion{}",
+                              zone_elements, nominal ? ", under the nominal pressure" : "");
   if (has_state && may_pass_c_S && zone_elements < elements_for_transition)
     return is +
            "; below 16 the mesh may decide whether fronts pass c_S, the outcome and not its digits alone: "
@@ -219,7 +219,7 @@ void add_cautions(const input::Case& config, RuptureOutlook& o) {
   if (!o.process_zone_elements) return;
   const auto bodies = bodies_of(config);
   if (auto caution = caution_of_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
-                                     config.friction.has_state());
+                                     config.friction.has_state(), o.nominal);
       !caution.empty())
     o.cautions.push_back(std::move(caution));
   const double length_m = stability::damping_length_m(bodies);
@@ -282,10 +282,12 @@ std::string steady_sliding(const input::Case& config, const std::vector<double>&
   return slow == fast ? slow : fmt::format("{}; at 1 m/s {}", slow, fast);
 }
 
-RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const std::vector<double>& x_m) {
+RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const std::vector<double>& x_m,
+                          bool nominal) {
   std::vector<stability::NodeBefore> nodes;
   for (const auto& p : inside.placed) nodes.push_back(p.node);
   RuptureOutlook o;
+  o.nominal = nominal;
   o.of_nodes = stability::outlook(bodies_of(config), nodes);
   o.trigger_length_m = trigger_length_m(config);
   if (config.friction.has_state()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
@@ -328,7 +330,7 @@ std::string doubt_of_forced_patch(const input::Case& config) {
 RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
                                std::span<const double> tributary_m) {
   const auto inside = nodes_inside(config, before);
-  auto o = outlook_of(config, inside, before.tractions.x_m);
+  auto o = outlook_of(config, inside, before.tractions.x_m, false);
   add_doubts(config, inside, o);
   if (auto caution = caution_of_trigger(config, before, tributary_m); !caution.empty())
     o.cautions.push_back(std::move(caution));
@@ -345,8 +347,7 @@ RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) 
   Inside inside;
   inside.placed = {{0, node_before(config.friction, strength_Pa, p_Pa)}};
   inside.has_cohesion = config.friction.cohesion_Pa() > 0;
-  auto o = outlook_of(config, inside, interface_x_m(meshes.plate));
-  o.nominal = true;
+  auto o = outlook_of(config, inside, interface_x_m(meshes.plate), true);
   // S, and what follows from it, take the tractions along the interface.
   o.of_nodes.S = o.of_nodes.drop_ratio = {nan, nan, nan};
   o.of_nodes.supershear_half_length_m.reset();

@@ -74,6 +74,34 @@ class TurnFinder {
   double extreme_, amount_, direction_ = 1;
 };
 
+/// Finds that slip is steady: while all nodes that stick by friction slip by many d_c, psi stays as it is.
+class SteadySlip {
+ public:
+  explicit SteadySlip(const interface::QuasiDynamicFriction& friction) : friction_(friction) {}
+
+  /// @return whether it is steady
+  bool see(const motion::SlowSlip& state) {
+    constexpr double many = 10, least_change = 1e-3;  // of d_c, and of a
+    bool has_slipped = !u_x_m_.empty();
+    for (std::size_t k = 0; k < psi_.size(); ++k) {
+      if (state.contact[k] != statics::Contact::stick) continue;
+      if (std::abs(state.psi[k] - psi_[k]) > least_change * friction_.a()[k]) {
+        u_x_m_.clear();
+        break;
+      }
+      has_slipped = has_slipped && std::abs(state.u_x_m[k] - u_x_m_[k]) > many * friction_.d_c_m()[k];
+    }
+    if (!u_x_m_.empty()) return has_slipped;
+    u_x_m_ = state.u_x_m;
+    psi_ = state.psi;
+    return false;
+  }
+
+ private:
+  const interface::QuasiDynamicFriction& friction_;
+  std::vector<double> u_x_m_, psi_;  ///< when psi changed last
+};
+
 void add_event_works(const record::Energies& of_event, record::Energies& sum) {
   for (const auto& term : record::energy_terms)
     if (term.kind == record::EnergyKind::work) sum.*term.member += of_event.*term.member;
@@ -325,12 +353,18 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   };
   slow_->start(held_.time_s, held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
   TurnFinder turns(friction(), 0.01 * std::ranges::min(slow_->friction().a()));
+  SteadySlip steady(slow_->friction());
   const auto n_before = slow_->n_steps();
   give_row();
   const auto after_step = [&] {
     if (!monitor_(0, 0))
       throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after the tilt", state.time_s));
     require_stands(state.time_s, state.shear_m + held_.moved_m, state.t_Pa, state.p_Pa);
+    if (std::isinf(path_.end_s()) && steady.see(state))
+      throw UserError(
+          "{:.6g} s after the tilt the interface slips steadily, at {:.3g} m/s: no event comes; give {}, or "
+          "a softer machine ({})",
+          state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"), Key("loading.shear_stiffness_Pa"));
     if ((slow_->n_steps() - n_before) % record::steps_per_slow_row == 0 &&
         (n_rows < record::all_slow_rows || has_changed()))
       give_row();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,6 +49,7 @@ class SequenceSession {
   void require_parts_unchanged() const;
   /// The next event. @return false where none begins
   bool run_event();
+  UserError does_not_rest(const std::string& part, const Result& result) const;
   /// The state in which an event begins, as Sequence::next.
   const InitialState* load_to(const std::string& event);
   /// Between events.
@@ -163,13 +165,25 @@ bool SequenceSession::run_event() {
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
   if (event.end == motion::EventEnd::blow_up)
     throw BlowUp(fmt::format("{}: {}; {}", part, event.reason, what_was_kept(folder_)));
-  if (event.end != motion::EventEnd::quiet)
-    throw UserError("{} has not come to rest: {}; choose a later {}, a larger {}, or edges that absorb; {}",
-                    part, end_of_event(finished.result), Key("time.end_s"),
-                    Key("material.stiffness_damping_s"), what_was_kept(folder_));
+  if (event.end != motion::EventEnd::quiet) throw does_not_rest(part, finished.result);
   sequence_->take(finished.result);
   sums_.push_back(files::sha256_of_file(dir / files::checksum_list));
   return true;
+}
+
+UserError SequenceSession::does_not_rest(const std::string& part, const Result& result) const {
+  const auto what = fmt::format("{} has not come to rest: {}", part, end_of_event(result));
+  const auto& row = result.event.last_row;
+  const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
+  if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
+    return UserError(
+        "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft machine do; choose "
+        "others "
+        "({}, {}), or a later {}; {}",
+        what, Key("loading.shear_stiffness_Pa"), Key("loading.normal_stiffness_Pa"), Key("time.end_s"),
+        what_was_kept(folder_));
+  return UserError("{}; choose a later {}, a larger {}, or edges that absorb; {}", what, Key("time.end_s"),
+                   Key("material.stiffness_damping_s"), what_was_kept(folder_));
 }
 
 const InitialState* SequenceSession::load_to(const std::string& event) {
@@ -199,7 +213,10 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
     return initial;
   } catch (const UserError& error) {
     if (sequence_->events().empty()) throw;
-    Message message(fmt::format("{} is not found: {}; {}", event, error.what(), what_was_kept(folder_)));
+    Message message(fmt::format(
+        "{} is not found: {}; {}{}", event, error.what(),
+        input::heals(config_) ? "mu_s is what it has grown to (sequence.healing_per_e_fold); " : "",
+        what_was_kept(folder_)));
     message.keys = error.keys();
     throw UserError(message);
   }

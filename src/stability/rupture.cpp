@@ -14,7 +14,7 @@ namespace slipfront::stability {
 namespace {
 
 double drop_ratio_of(const NodeBefore& node) {
-  return (node.t_Pa - node.residual_Pa) / (node.strength_Pa - node.residual_Pa);
+  return std::max(0., (node.t_Pa - node.residual_Pa) / (node.strength_Pa - node.residual_Pa));
 }
 
 bool weakens(const NodeBefore& node) {
@@ -139,7 +139,6 @@ void set_lengths_of_state(const std::vector<NodeBefore>& nodes, Outlook& o) {
     return s.breakdown_per_m > 0 ? process_zone_m(mu, s.breakdown_per_m * p, 1) : infinity;
   });
   o.unstable_wavelength_m = median(unstable_wavelength_m);
-  o.S = o.drop_ratio = {nan, nan, nan};
   o.regime = o.n_weakening > 0 ? "unknown: the strength at a tip depends on its slip rate"
                                : "none: friction does not weaken at any node";
 }
@@ -151,6 +150,11 @@ Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& all) {
   o.n_nodes = all.size();
   o.n_weakening = static_cast<std::size_t>(std::ranges::count_if(all, weakens));
   o.n_driven = static_cast<std::size_t>(std::ranges::count_if(all, is_driven));
+  o.modulus_Pa = modulus_Pa(bodies);
+  if (!all.empty() && all.front().state) {
+    set_lengths_of_state(all, o);
+    return o;
+  }
   auto nodes = all;
   std::erase_if(nodes, [](const NodeBefore& node) { return strength_excess(node) > barrier_S; });
   o.n_barriers = all.size() - nodes.size();
@@ -162,12 +166,7 @@ Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& all) {
   }
   o.S = spread_of(S);
   o.drop_ratio = spread_of(ratio);
-  o.modulus_Pa = modulus_Pa(bodies);
   const auto drop_Pa = [](const NodeBefore& node) { return node.strength_Pa - node.residual_Pa; };
-  if (!nodes.empty() && nodes.front().state) {
-    set_lengths_of_state(nodes, o);
-    return o;
-  }
   o.nucleation_length_m = median_length_m(nodes, &NodeBefore::d_c_m, [&](const NodeBefore& node) {
     return nucleation_length_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m);
   });

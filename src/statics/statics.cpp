@@ -228,8 +228,11 @@ Message keys_of_tilt(const Loading& loading) {
 }
 
 [[noreturn]] void contact_does_not_settle(const Loading& loading) {
-  throw UserError("the static contact iteration does not converge; change {}, or {}", keys_of_tilt(loading),
-                  Key("plate.corner"));
+  throw UserError(
+      "the static contact iteration does not converge: contact opens nearly everywhere, or a tall plate "
+      "tips; "
+      "change {}, {}, or {}",
+      keys_of_tilt(loading), Key("plate.height_m"), Key("plate.corner"));
 }
 
 /// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each

@@ -91,14 +91,43 @@ def test_a_rate_of_events_beyond_that_of_fronts_is_refused(program):
     assert "beyond the rate of a front's tip" in line and "choose a smaller one" in line
 
 
-def test_a_load_without_end_that_brings_no_event_ends(program, write_case):
-    """Sliding is steady, however far: the block is far stiffer than (b - a) p/d_c."""
-    steady = sets(
-        "friction.law=rate_and_state_aging", "friction.a=0.5", "friction.b=0.505", "friction.d_c_m=1e-3"
+STEADY = sets(
+    "friction.law=rate_and_state_aging",
+    "friction.a=0.5",
+    "friction.b=0.505",
+    "friction.d_c_m=1e-3",
+    "friction.V_i_m_per_s=1e-6",
+    "loading.mean_pressure_Pa=1e8",
+)
+
+
+def test_a_load_without_end_that_brings_steady_sliding_ends(program, write_case):
+    """The block is far stiffer than (b - a) p/d_c."""
+    line = refusal(program("run", write_case(STICKING), *STEADY, "-o", "out", "-q"))
+    assert "the interface slips steadily" in line and "no event comes; give sequence.end_s" in line
+
+
+def test_an_event_that_dead_loads_drive_on_is_told_from_one_that_needs_time(program, write_case):
+    dead = sets("loading.shear_stiffness_Pa=1e3", "loading.shear_speed_over_c_L=1e-9", "time.end_s=2e-3")
+    line = refusal(program("run", write_case(STICKING), *dead, "-o", "out", "-q"))
+    assert "event 1 has not come to rest" in line and "slip does not slow down: the loads drive it on" in line
+    early = sets("time.end_s=1.5e-4", "time.quiet_s=1.2e-4")
+    line = refusal(program("run", write_case(STICKING), *early, "-o", "early", "-q"))
+    assert "event 1 has not come to rest" in line and "choose a later time.end_s, a larger" in line
+
+
+def test_an_event_begins_below_the_rate_of_radiation_whatever_the_first_rate(program, write_case):
+    """V_i of 1 m/s makes a front's tip faster than what inertia lets slip reach."""
+    resolved = program("info", *STICK_SLIP, *sets("friction.V_i_m_per_s=1"))
+    require_done(resolved)
+    line = refusal(
+        program(
+            "validate",
+            *STICK_SLIP,
+            *sets("friction.V_i_m_per_s=1", "sequence.inertia_slip_rate_m_per_s=1"),
+        )
     )
-    case = [write_case(STICKING), *steady, *sets("friction.V_i_m_per_s=1e-6", "loading.mean_pressure_Pa=1e8")]
-    line = refusal(program("run", *case, "-o", "out", "-q"))
-    assert "no event has begun, and the loaded edge has moved by more than the plate's size, 0.2 m" in line
+    assert "beyond the rate of a front's tip or of radiation" in line
 
 
 @pytest.mark.parametrize("name", ["events", "events/0001", "slow", "slow/0001", "events/0001/unfinished"])

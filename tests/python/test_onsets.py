@@ -268,3 +268,30 @@ def test_a_record_from_right_to_left_is_turned_round(tmp_path):
     for name, order in (("down.csv", 1), ("up.csv", -1)):
         (tmp_path / name).write_text("\n".join(["x_mm,time_us", *rows[::order]]) + "\n")
     assert slipfront.read_onsets(tmp_path / "down.csv").equals(slipfront.read_onsets(tmp_path / "up.csv"))
+
+
+def test_intervals_hold_the_errors_that_are_given():
+    """Exact times of 1,000 m/s at places 2 mm apart with an error of 1 mm: 1.96 x 1 mm over the root of the sum
+    of squares of the distances, 40 mm2."""
+    x_m = 2e-3 * np.arange(5)
+    given = {"resolution_s": 0.0, "place_error_m": 1e-3}
+    fronts = slipfront.find_fronts(x_m, x_m / 1e3, never_slipped="none", **given)
+    share = 1.96 * 1e-3 / np.sqrt(40e-6)
+    assert float(fronts.speed_m_per_s[0]) == pytest.approx(1e3, rel=1e-12)
+    assert float(fronts.speed_low_m_per_s[0]) == pytest.approx(1e3 / (1 + share), rel=1e-9)
+    assert float(fronts.speed_high_m_per_s[0]) == pytest.approx(1e3 / (1 - share), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "onset_s, doubt",
+    [
+        ([0.0, 1e-5, np.nan, np.nan, np.nan], "front 0: two onsets make its speed"),
+        ([0.0, 1e-6, 2e-6, 42e-6, 82e-6], "front 0: v_tip is 250 to 1e+04 m/s: no one speed is that"),
+    ],
+)
+def test_lines_that_say_little_are_in_doubt(onset_s, doubt):
+    settings = slipfront.FrontSettings(arrest_time_s=1e-3, min_length_m=5e-3)
+    found = slipfront.find_fronts(0.01 * np.arange(5), onset_s, settings=settings)
+    assert any(note.startswith(doubt) for note in found.notes), found.notes
+    even = slipfront.find_fronts(0.01 * np.arange(5), 1e-5 * np.arange(5), settings=settings)
+    assert not any(note.startswith("front ") for note in even.notes)
