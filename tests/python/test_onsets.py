@@ -271,8 +271,8 @@ def test_a_record_from_right_to_left_is_turned_round(tmp_path):
 
 
 def test_intervals_hold_the_errors_that_are_given():
-    """Exact times of 1,000 m/s at places 2 mm apart with an error of 1 mm: 1.96 x 1 mm over the root of the sum
-    of squares of the distances, 40 mm2."""
+    """Exact times of 1,000 m/s at places 2 mm apart with an error of 1 mm: 1.96 of it over the root of the
+    sum of squares of the distances, 40 mm2."""
     x_m = 2e-3 * np.arange(5)
     given = {"resolution_s": 0.0, "place_error_m": 1e-3}
     fronts = slipfront.find_fronts(x_m, x_m / 1e3, never_slipped="none", **given)
