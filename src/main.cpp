@@ -125,9 +125,9 @@ std::pair<int, std::string> reason_to_end() try { throw; } catch (const slipfron
 /// Rank 0 reads the options, and the others take part in the runs that these ask for.
 void run_on(slipfront::Processes& processes, int argc, char** argv) try {
   if (processes.size() > 1) slipfront::run::require_same_program(processes);
-  if (!processes.is_root()) return slipfront::run::take_part(processes);
+  if (!processes.is_root()) return slipfront::run::serve_ranks(processes);
   run(argc, argv, processes);
-  slipfront::run::release(processes);
+  slipfront::run::stop_ranks(processes);
 } catch (const slipfront::FailedElsewhere&) {
   // Rank 0 tells why.
 } catch (...) {
@@ -137,7 +137,7 @@ void run_on(slipfront::Processes& processes, int argc, char** argv) try {
     processes.fail(code, fmt::format("{}rank {}: {}", name, processes.rank(),
                                      line.substr(line.starts_with(name) ? name.size() : 0)));
   if (processes.is_awaited()) processes.fail(code, line);
-  slipfront::run::release(processes);
+  slipfront::run::stop_ranks(processes);
   throw;
 }
 

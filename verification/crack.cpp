@@ -86,7 +86,7 @@ Run run(double ratio, int elements_per_zone) {
                    .h_m = h_m,
                    .pressure_Pa = p_Pa,
                    .law = law,
-                   .intact = [&](double x) { return x < -0.25 * h_m ? 0.0 : 1.0; }});
+                   .strength_fraction = [&](double x) { return x < -0.25 * h_m ? 0.0 : 1.0; }});
   body.load([&](double) { return residual_Pa + drop_Pa; });
   Run run{.zone = elements_per_zone * h_m / unit_m};
   while (body.time_s() < run_end * t_c) {
@@ -128,7 +128,7 @@ Arrest grow_and_stop(double r_over_zone, double width_over_r) {
                    .h_m = h_m,
                    .pressure_Pa = p_Pa,
                    .law = law,
-                   .intact = [&](double x) { return std::abs(x) < r_m - 0.5 * h_m ? 0.0 : 1.0; }});
+                   .strength_fraction = [&](double x) { return std::abs(x) < r_m - 0.5 * h_m ? 0.0 : 1.0; }});
   const double rise_s = 120 * r_m / c_S, hold_s = 60 * r_m / c_S;
   Arrest arrest;
   const auto half_length = [&] { return slip_contour_m(body, 0.5 * law.d_c_m, r_m - 1.5 * h_m) / r_m; };

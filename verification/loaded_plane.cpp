@@ -31,7 +31,8 @@ LoadedBody::LoadedBody(const LoadedPlane& plane)
       mesh_(make_mesh(plane)),
       x_m_(places_m(mesh_, plane.width_m)),
       stepper_(mesh_, undamped, {plane.law, constant_pressure}, plain_stepping()) {
-  const motion::Loads loads{.intact = plane.intact ? at(plane.intact) : std::vector<double>{}};
+  const motion::Loads loads{.strength_fraction = plane.strength_fraction ? at(plane.strength_fraction)
+                                                                         : std::vector<double>{}};
   auto state =
       start(stepper_, mesh_, {.contact = statics::Contact::stick, .p_Pa = plane.pressure_Pa, .loads = loads});
   if (!plane.t_at_V_i_Pa) return;

@@ -15,7 +15,7 @@ struct LoadedPlane {
   double width_m = 0, height_m = 0, h_m = 0;
   double pressure_Pa = 0;
   interface::FrictionLaw law;
-  std::function<double(double x_m)> intact = {};  ///< see interface::Interface; none: 1 everywhere
+  std::function<double(double x_m)> strength_fraction = {};  ///< see interface::Interface; none: 1 everywhere
   /// Traction under which nodes slide at V_i, of a law with a state.
   std::function<double(double x_m)> t_at_V_i_Pa = {};
 };

@@ -90,11 +90,13 @@ Found run(double slope, double h_m, double v_m_per_s) {
     const double x = mesh.x_m[n], r = std::abs(x - middle_m);
     x_m.push_back(x);
     laws.emplace_back(interface::SlipWeakening{mu_s, mu_k, 2 * slope * std::max(r, 3e-3) / strength_drop_Pa});
-    loads.intact.push_back(r < patch_m ? 0 : 1);
+    loads.strength_fraction.push_back(r < patch_m ? 0 : 1);
   }
   const std::vector t(x_m.size(), t_Pa), p(x_m.size(), p_Pa);
   loads.prestress_t_Pa = t, loads.prestress_p_Pa = p;
-  const interface::ContactModel contact { .law = laws.front(), .of_nodes = interface::NodeLaws(laws, false) };
+  const interface::ContactModel contact {
+    .law = laws.front(), .law_per_node = interface::NodeLaws(laws, false)
+  };
   motion::TimeStepping time;
   time.end_s = 1.25 * read_at_m / v_m_per_s;
   time.quiet_s = infinity;

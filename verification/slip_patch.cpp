@@ -34,7 +34,7 @@ Patch slip(double a_over_h, double width_over_a) {
                    .pressure_Pa = p_Pa,
                    .law = interface::SlipWeakening{.mu_s = 100, .mu_k = 0, .d_c_m = 1e3},
                    // The nodes at +-a are the first that stick.
-                   .intact = [](double x) { return std::abs(x) < a_m * (1 - 1e-6) ? 0.0 : 1.0; }});
+                   .strength_fraction = [](double x) { return std::abs(x) < a_m * (1 - 1e-6) ? 0.0 : 1.0; }});
   const double rise_s = 40 * a_m / c_S;
   while (body.time_s() < 2 * rise_s) {
     const double s = std::min(1.0, body.time_s() / rise_s);

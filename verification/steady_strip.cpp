@@ -139,7 +139,7 @@ Found run(const Strip& strip) {
     loads.weakens_at_s.push_back(strip.arrival_s(strip.way_m(mesh.x_m[n])));
   }
   loads.weakening_time_s = 2 * zone_m / v;
-  loads.intact.assign(x_m.size(), 0);
+  loads.strength_fraction.assign(x_m.size(), 0);
   const std::vector t(x_m.size(), t_Pa), p(x_m.size(), p_Pa);
   loads.prestress_t_Pa = t, loads.prestress_p_Pa = p;
   constexpr double never_m = 1;  // slip over which friction weakens by itself

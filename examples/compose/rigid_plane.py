@@ -25,7 +25,7 @@ def compose() -> slipfront.Stepper:
     plate = slipfront.Body(slipfront.Mesh(**PLATE), **PMMA)
     stepper = slipfront.Stepper(plate, slipfront.Interface(**FRICTION))
     weakened = np.abs(stepper.x_m - PATCH_M) <= HALF_LENGTH_M
-    stepper.start(T_PA, P_PA, intact=np.where(weakened, 0, 1))
+    stepper.start(T_PA, P_PA, strength_fraction=np.where(weakened, 0, 1))
     return stepper
 
 

@@ -41,7 +41,7 @@ inline std::vector<double> rupture(const slipfront::interface::FrictionLaw& law,
   motion::Loads loads;
   for (const auto node : mesh.interface_nodes) {
     before.x_m.push_back(mesh.x_m[node]);
-    loads.intact.push_back(std::abs(mesh.x_m[node] - 0.1) <= 12.5e-3 ? 0 : 1);
+    loads.strength_fraction.push_back(std::abs(mesh.x_m[node] - 0.1) <= 12.5e-3 ? 0 : 1);
   }
   before.t_s_Pa = loads.prestress_t_Pa = std::vector(before.x_m.size(), 1.2e6);
   before.p_s_Pa = loads.prestress_p_Pa = std::vector(before.x_m.size(), 2e6);

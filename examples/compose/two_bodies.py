@@ -28,7 +28,7 @@ def compose() -> slipfront.Stepper:
     above, below = slipfront.Body(mesh, **PMMA, **DAMPING), slipfront.Body(mesh, **ALUMINIUM, **DAMPING)
     stepper = slipfront.Stepper(above, slipfront.Interface(**FRICTION), below)
     weakened = np.abs(stepper.x_m - PATCH_M) <= HALF_LENGTH_M
-    stepper.start(T_PA, P_PA, intact=np.where(weakened, 0, 1))
+    stepper.start(T_PA, P_PA, strength_fraction=np.where(weakened, 0, 1))
     return stepper
 
 

@@ -17,14 +17,14 @@ Outcome make_outcome(const std::string& name, const run::Result& result, const r
   o.speeds = result.speeds;
   for (const auto& front : result.fronts)
     if (fronts::length_m(front) >= criteria_length_m * (1 - 1e-9)) o.fronts.push_back(front);
-  o.common = initial.common.tractions;
-  o.inside_from_m = initial.common.inside_from_m;
-  o.inside_to_m = initial.common.inside_to_m;
+  o.common = initial.subcritical.tractions;
+  o.inside_from_m = initial.subcritical.inside_from_m;
+  o.inside_to_m = initial.subcritical.inside_to_m;
   o.contact_from_m = o.inside_from_m - result.config.loading.edge_margin_m;
   o.contact_to_m = o.inside_to_m + result.config.loading.edge_margin_m;
-  o.peak_x_m = initial.common.peak_x_m;
+  o.peak_x_m = initial.subcritical.peak_x_m;
   o.critical_shear_m = initial.critical_shear_m;
-  o.ramp_critical_shear_m = initial.ramp ? initial.ramp->spontaneous.shear_m : nan;
+  o.ramp_critical_shear_m = initial.ramp ? initial.ramp->supercritical.shear_m : nan;
   o.ramp_onsets = initial.ramp ? initial.ramp->record.n_onsets() : 0;
 
   o.trigger_work_J_per_m = result.event.energies.empty() ? nan : result.event.energies.back().trigger_work;

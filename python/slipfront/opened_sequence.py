@@ -23,7 +23,7 @@ from slipfront.units import attributes
 # Words for the columns of events.csv and loading.csv that mean something else there, or are theirs alone.
 EVENT_NAMES = {
     "event": "number of the event",
-    "begin_s": "time since the tilt at which the event begins",
+    "begin_s": "time since normal loading at which the event begins",
     "shear_m": "displacement of the top edge or the pusher to +x when it begins",
     "begin_x_m": "where slip begins inside; the middle of nodes that begin together",
     "from_x_m": "left end of what slips",
@@ -51,8 +51,8 @@ EVENT_NAMES = {
 LOADING_NAMES = {
     "event": "number of events that have begun",
     "phase": "where the loading stands",
-    "time_s": "time since the tilt",
-    "shear_m": "displacement of the top edge or the pusher to +x since the tilt",
+    "time_s": "time since normal loading",
+    "shear_m": "displacement of the top edge or the pusher to +x since normal loading",
     "normal_force_N_per_m": "sum of the pressure over the interface",
     "shear_force_N_per_m": "sum of the tangential traction",
     "shear_over_normal": "shear over normal force",
@@ -133,7 +133,7 @@ class SlowSlip(Sequence[xr.Dataset]):
 
     def _open(self, file: Path) -> xr.Dataset:
         history = stored_history(result_file(file, self._folder), self._kept, self._attrs)
-        history["time_s"].attrs["long_name"] = "time since the tilt"
+        history["time_s"].attrs["long_name"] = "time since normal loading"
         return history
 
 
@@ -204,7 +204,7 @@ class OpenSequence:
     @property
     def slow(self) -> Sequence[xr.Dataset]:
         """Under a law with a state the slow slip before each event, as OpenRun.history, with time and slip
-        since the tilt; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the
+        since normal loading; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the
         last event too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
         folder, n_events = self.folder, self.events.sizes["event"]
         behind_the_last = self.status == "complete" and exists(folder / f"slow/{n_events + 1:04}")

@@ -33,7 +33,7 @@ double total_bytes(const Budget& budget);
 void require_room(const Budget& budget, double available, std::string_view work, std::string_view where,
                   std::string_view room, std::string_view instead = "");
 
-/// The same of the memory that can be allocated without swapping.
+/// Requires memory that can be allocated without swapping.
 void require_memory(const Budget& budget, std::string_view work, std::string_view instead = "");
 
 }  // namespace slipfront

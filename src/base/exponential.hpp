@@ -11,8 +11,8 @@ struct Decay {
   V left, lost;
 };
 
-/// Of x >= 0, for a double and for SimdVector bit by bit alike. exp(-x) is 0 from x = 708 on, where it nears
-/// the smallest normal number, 2.2e-308.
+/// exp(-x) of x >= 0, for a double and for SimdVector bit by bit alike. exp(-x) is 0 from x = 708 on, where
+/// it nears the smallest normal number, 2.2e-308.
 ///
 /// x = k ln 2 - r with |r| <= ln 2 / 2, so that exp(-x) = 2^-k (1 + q), q = exp(r) - 1 = r + r^2/2! + ... +
 /// r^13/13!; the next term is below 5e-18.

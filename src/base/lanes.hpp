@@ -45,7 +45,7 @@ inline constexpr int vector_bytes = 32;
 template <class T, int n>
 struct VectorOf {
   typedef T Type __attribute__((vector_size(n * sizeof(T))));
-  /// The same anywhere in memory: packed, so that no alignment is promised.
+  /// A vector anywhere in memory: packed, so that no alignment is promised.
   struct __attribute__((packed, may_alias)) InMemory {
     Type values;
   };

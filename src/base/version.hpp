@@ -17,7 +17,7 @@ std::string version_line();
 /// What it was compiled for: "x86-64-v3", "the machine that compiled it".
 const char* processor();
 
-/// Of the vectors that its loops take.
+/// Size of the vectors that the processor's loops take.
 int vector_bytes_of_processor();
 
 /// Compiler that made the program, "g++ 12.2.0".

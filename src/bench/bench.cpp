@@ -235,7 +235,7 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const statics::Statics statics(mesh, material, loading, mu_s);
   StaticsRun result{columns, mesh.grid.rows, std::string(statics::name_of(chosen)), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;
-  const auto common = statics.shear_to(1 - loading.critical_margin);
+  const auto subcritical = statics.shear_to(1 - loading.critical_margin);
   const auto spontaneous = statics.shear_to(1 + loading.critical_margin);
   result.wall_s = seconds_since(start);
   result.processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;

@@ -77,7 +77,7 @@ std::string line_of(const run::FracturePrediction& p, const fracture::PredictedF
   const auto runs = to + fmt::format("from {:.4f} m, at most {:.4g} m/s, {:.2g} c_S, ",
                                      front.points.front().x_m, fastest, fastest / c_S);
   if (front.end == fracture::PredictedEnd::contact_end) return runs + "through to the end of the contact\n";
-  if (!p.foretells_arrest(front))
+  if (!p.predicts_arrest(front))
     return runs +
            fmt::format("G at rest below the fracture energy from {:.4f} m on, see the note\n", last.x_m);
   if (std::isinf(last.fracture_energy_J_per_m2))

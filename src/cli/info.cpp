@@ -109,7 +109,7 @@ void add_costs(const run::Info& info, Listing& list) {
 }
 
 /// The forces and the displacements that give them.
-void add_loads(const run::FoundLoads& loads, bool is_pushed, Listing& list) {
+void add_loads(const run::ResolvedLoads& loads, bool is_pushed, bool heals, Listing& list) {
   list.add("normal force", fmt::format("{:.6g} N/m, a mean pressure of {:.6g} Pa", loads.normal_force_N_per_m,
                                        loads.mean_pressure_Pa));
   list.add("  upper edge pressed down", fmt::format("{:.6g} m at its left end, {:.6g} m at its right one",
@@ -120,6 +120,7 @@ void add_loads(const run::FoundLoads& loads, bool is_pushed, Listing& list) {
                        loads.critical_shear_force_N_per_m));
   list.add(is_pushed ? "  left side then pushed to +x" : "  upper edge then moved to +x",
            fmt::format("{:.6g} m, critical {:.6g} m", loads.shear_m, loads.critical_shear_m));
+  if (heals) list.add("  healing", "raises the critical ones until the first event: run tells by how much");
 }
 
 std::string text_of(double number) {
@@ -175,10 +176,10 @@ void add_cracks(const run::FracturePrediction& p, Listing& list) {
                                 of.first_length_m, of.critical_length_m)
                   : "none runs from there, however long";
   for (const auto& front : of.fronts)
-    if (p.foretells_arrest(front))
+    if (p.predicts_arrest(front))
       text += fmt::format("; to {}x it arrests at {:.4g} m", front.direction > 0 ? '+' : '-',
                           front.points.back().x_m);
-  if (!p.doubts_of_arrest.empty()) text += "; no arrest is foretold, see slipfront fracture";
+  if (!p.doubts_of_arrest.empty()) text += "; no arrest is predicted, see slipfront fracture";
   list.add("fronts as cracks", text);
 }
 
@@ -272,7 +273,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_steps(config, info, list);
   add_costs(info, list);
   if (info.shared) add_shared(*info.shared, list);
-  if (info.loads) add_loads(*info.loads, config.plate.pusher.is_there(), list);
+  if (info.loads) add_loads(*info.loads, config.plate.pusher.is_there(), input::heals(config), list);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",

@@ -9,7 +9,7 @@ namespace slipfront::cli {
 /// more; a reader who has gone (a closed pipe) wants no more.
 void print_output(std::string_view text);
 
-/// The same for what has been printed before.
+/// Flushes what has been printed before, with the same errors.
 void finish_output();
 
 }  // namespace slipfront::cli

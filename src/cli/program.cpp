@@ -76,7 +76,7 @@ CommandDescription Program::description() const {
   return described(*app_);
 }
 
-/// Of a word in place of a subcommand; beside it CLI11 would print help.
+/// Refuses a word in place of a subcommand, beside which CLI11 would print help.
 static void require_subcommand(const CLI::App* app) {
   while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
   const std::vector<std::string> unused = app->remaining();

@@ -43,12 +43,12 @@ struct RunArguments {
 };
 
 void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
-  const double shear_m = ramp.spontaneous.shear_m;
+  const double shear_m = ramp.supercritical.shear_m;
   const auto n_inside = ramp.n_onsets_inside();
   print(
       "the ramp brings t/p inside to mu_s at x = {:.4g} m, at a shear of {:.5g} m, {:+.3f} % of the {:.5g} m "
       "found directly\n",
-      ramp.common.peak_x_m, shear_m, 100 * (shear_m / direct_shear_m - 1), direct_shear_m);
+      ramp.subcritical.peak_x_m, shear_m, 100 * (shear_m / direct_shear_m - 1), direct_shear_m);
   print("beginnings of slip during the ramp: {} at the edges, {} inside, in the last step\n",
         ramp.record.n_onsets() - n_inside, n_inside);
 }
@@ -117,19 +117,20 @@ std::string fracture_text(const run::Result& result, const fronts::Front& front)
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   if (initial.prescribed)
-    print(
-        "prescribed tractions, t/p {} to {:.4g}{}\n", initial.common.peak_ratio < 0 ? "down" : "up",
-        initial.common.peak_ratio,
-        result.config.prestress.file.empty() ? "" : fmt::format(" at x = {:.4g} m", initial.common.peak_x_m));
+    print("prescribed tractions, t/p {} to {:.4g}{}\n", initial.subcritical.peak_ratio < 0 ? "down" : "up",
+          initial.subcritical.peak_ratio,
+          result.config.prestress.file.empty()
+              ? ""
+              : fmt::format(" at x = {:.4g} m", initial.subcritical.peak_x_m));
   else if (initial.ramp)
     print_ramp(*initial.ramp, initial.critical_shear_m);
   else if (statics::is_sheared_by_force(result.config.loading))
     print("shear force {:.5g} N/m, {:.4g} of the critical one, t/p up to {:.4g} at x = {:.4g} m\n",
           initial.loads->shear_force_N_per_m,
           initial.loads->shear_force_N_per_m / initial.loads->critical_shear_force_N_per_m,
-          initial.common.peak_ratio, initial.common.peak_x_m);
+          initial.subcritical.peak_ratio, initial.subcritical.peak_x_m);
   else
-    print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
+    print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.subcritical.peak_x_m,
           initial.critical_shear_m);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(result.config); speed_m_per_s > 0)
     print("the upper edge moves to +x at {:.3g} m/s during the event (loading.shear_speed_over_c_L)\n",
@@ -218,7 +219,7 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
   print("ended after {} event{}: {}\n", n_events, n_events == 1 ? "" : "s", finished.end);
   const auto& events = finished.events;
   if (std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
-    print("{} of them longer than the nucleation length\n",
+    print("{} of them longer than the nucleation length, or global\n",
           std::ranges::count_if(events, record::has_nucleated));
   print("results: {}\n", folder.dir().string());
 }

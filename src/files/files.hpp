@@ -83,7 +83,7 @@ class PlacedFile {
 /// Writes a text file that is there completely, or not at all, after a loss of power too: under another name
 /// first.
 void write_text(const std::filesystem::path& file, std::string_view text);
-/// The same piece by piece.
+/// Writes a text piece by piece.
 void write_text(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write);
 
 /// Returns when what a file or a folder holds is on the device.
@@ -94,7 +94,7 @@ void move_file(const std::filesystem::path& from, const std::filesystem::path& t
 
 /// Removes a file or an empty folder; it may be gone already.
 void remove_file(const std::filesystem::path& file);
-/// The same without a message. @return whether it was removed
+/// Removes it without a message. @return whether it was removed
 bool try_to_remove(const std::filesystem::path& path, bool is_folder = false);
 
 /// Makes a folder whose parent is there.

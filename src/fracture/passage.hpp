@@ -39,7 +39,7 @@ struct Recorded {
   const record::TipSlip& tip_slip;
 };
 
-/// Of all points of a front.
+/// Tip states at all points of a front.
 ///
 /// G_slip: at a row of tip_slip with its tip at the node slip^2 behind follows a parabola in r, whose slope
 /// where it is 0 is slip_squared_per_G_and_distance times G; its curvature is that of a crack of finite

@@ -12,7 +12,7 @@ namespace slipfront::fracture {
 
 SlipResponse response_of_half_spaces(const Bodies& bodies, const std::vector<double>& x_m) {
   const auto n = std::ssize(x_m);
-  // Of exp(i k x): t = -Y |k| slip and p = i k N slip, whence the kernels Y/(pi x^2) and N d/dx.
+  // Response to exp(i k x): t = -Y |k| slip and p = i k N slip, whence the kernels Y/(pi x^2) and N d/dx.
   const double Y = stiffness_Pa(bodies, 0);
   const double N = moving_stiffness_Pa(bodies, 0, 1).imag();
   SlipResponse response{x_m, Eigen::MatrixXd(n, n), Eigen::MatrixXd::Zero(n, n)};

@@ -19,11 +19,11 @@ struct SlipResponse {
   double spacing_m() const { return (x_m.back() - x_m.front()) / static_cast<double>(x_m.size() - 1); }
 };
 
-/// Of bodies without end: slip of a node is uniform between the middles to its neighbours.
+/// Response of bodies without end: slip of a node is uniform between the middles to its neighbours.
 /// @pre nodes at equal distances
 SlipResponse response_of_half_spaces(const Bodies& bodies, const std::vector<double>& x_m);
 
-/// Of a sample.
+/// Response of a sample.
 /// @param stiffness_N_per_m  condensed to the interface, x and y of each node in turn: forces on the plate by
 ///                           relative displacements
 SlipResponse response_of_sample(const Eigen::MatrixXd& stiffness_N_per_m, std::vector<double> x_m,

@@ -118,7 +118,7 @@ struct Sequence {
     std::vector<double> times_s, shears_m;
     bool operator==(const Path&) const = default;
   } path;
-  /// Of laws that stick: mu_s grows by the first for each e-fold of 1 + (time at rest)/(the second).
+  /// Healing of laws that stick: mu_s grows by the first for each e-fold of 1 + (time at rest)/(the second).
   double healing_per_e_fold = 0, healing_time_s = 1;
   /// Under a law with a state; without it that of inertia_slip_rate_m_per_s.
   std::optional<double> inertia_slip_rate_m_per_s;

@@ -30,7 +30,7 @@ DefaultRule multiple_of(const Scale& scale, const std::string& key) {
           }};
 }
 
-/// Of two bodies the slower one's, whose waves take longest.
+/// Shear speed of the slower of two bodies, whose waves take longest.
 double c_S_m_per_s(const Case& config) {
   const double of_plate = solid::shear_speed_m_per_s(config.material);
   if (!has_base_body(config)) return of_plate;
@@ -74,7 +74,7 @@ DefaultRule l_star_rule(const Scale& width) {
   return rule;
 }
 
-/// Of shear waves that stand between the interface and the edge that is held.
+/// Longest period of shear waves that stand between the interface and the edge that is held.
 double longest_period_s(const Case& config) {
   constexpr double quarter_waves = 4;
   double height_m = config.plate.height_m;
@@ -158,7 +158,7 @@ void set_defaults_by_rule(const Document& document, Case& config) {
   }
   const auto& prestress = config.prestress;
   if (prestress.t_Pa && !document.find("friction.V_i_m_per_s"))
-    settle_slip_rate(config.friction, *prestress.t_Pa, prestress.p_Pa);
+    set_initial_slip_rate(config.friction, *prestress.t_Pa, prestress.p_Pa);
 }
 
 }  // namespace slipfront::input

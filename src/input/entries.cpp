@@ -70,7 +70,7 @@ class Table {
   Table(Entries& entries, std::string name, Part part, Stage of_keys)
       : stage(of_keys), entries_(entries), name_(std::move(name)), part_(part) {}
 
-  /// Of keys that follow.
+  /// Stage and condition of the keys that follow.
   Stage stage;
   std::optional<Condition> only_with = {};
 
@@ -95,7 +95,7 @@ class Table {
     return add(leaf, member, any(), std::move(help));
   }
 
-  /// Of a member that is a std::optional<double>.
+  /// Adds the key of a member that is a std::optional<double>.
   template <class Member>
   Entry& optional(const char* leaf, Member member, Range range, double example, std::string help) {
     const auto ref = access(member);
@@ -110,7 +110,7 @@ class Table {
     return entry;
   }
 
-  /// Of an enumerator.
+  /// Adds the key of an enumerator.
   template <class Enum, class Of>
   Entry& word(const char* leaf, Enum Of::*member, std::type_identity_t<Words<Enum>> words, std::string help) {
     const auto ref = access(member);
@@ -488,11 +488,13 @@ void add_loading(Entries& all) {
               "length at each end of the contact that does not count for the critical shear");
   loading.only_with = sheared_to_margin();
   loading.add("critical_margin", &Loading::critical_margin, strictly_between(0, 1),
-              "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s");
+              "subcritical state, in which forced events begin, at t/p = (1 - margin) mu_s; "
+              "supercritical state of a spontaneous event at (1 + margin) mu_s");
   loading.only_with = sheared_without("loading.shear_over_critical", &Loading::shear_over_critical);
-  loading.optional("shear_force_N_per_m", &Loading::shear_force_N_per_m, above(0), 1e5,
-                   "t summed over the interface in the common state, per metre of thickness, instead of the "
-                   "margin; at most the critical one");
+  loading.optional(
+      "shear_force_N_per_m", &Loading::shear_force_N_per_m, above(0), 1e5,
+      "t summed over the interface in the subcritical state, per metre of thickness, instead of the "
+      "margin; at most the critical one");
   loading.only_with = sheared_without("loading.shear_force_N_per_m", &Loading::shear_force_N_per_m);
   loading.optional(
       "shear_over_critical", &Loading::shear_over_critical, {0, 1, true, false}, 0.9,
@@ -670,7 +672,7 @@ void add_sequence(Entries& all) {
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
   sequence.add(
       "times_s", [](auto& s) -> auto& { return s.path.times_s; }, above(0),
-      "times since the tilt, ascending, at which the loading has reached shears_m; none: it moves at "
+      "times since normal loading, ascending, at which the loading has reached shears_m; none: it moves at "
       "loading.shear_speed_over_c_L, as during each event in any case. It ends with the last one");
   sequence.add(
       "shears_m", [](auto& s) -> auto& { return s.path.shears_m; }, at_least(0),

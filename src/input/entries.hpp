@@ -71,7 +71,7 @@ struct Entry {
   Stage stage = Stage::mesh;
   /// Whether a case to which it applies has to set it: no default is meant.
   bool has_to_be_set = false;
-  /// Of a key without a default, which decides by being set: whether a case has it. `get` gives an example
+  /// Whether a case has a key without a default, which decides by being set. `get` gives an example
   /// else.
   std::function<bool(const Case&)> is_set = {};
 };
@@ -106,7 +106,7 @@ const LawEntries& law_of(const Case& config);
 /// Keys of every case, in the order of the case file; those of the friction laws follow `friction.law`.
 const std::vector<Entry>& common_entries();
 
-/// Of a key; null where none is that.
+/// The entry of a key; null where none is that.
 const Entry* find_entry(const std::vector<Entry>& entries, const std::string& key);
 /// One of common_entries. @pre it is
 const Entry& entry_of(const std::string& key);

@@ -103,7 +103,7 @@ struct AmongRows {
 
 AmongRows among_rows(const std::vector<double>& rows_x_m, double x_m, BetweenRows between,
                      double tolerance_m) {
-  // Of two rows as near as rounding, the position is at the later one.
+  // The position is at the later one of two rows as near as rounding.
   const auto beyond = std::ranges::upper_bound(rows_x_m, x_m + tolerance_m) - rows_x_m.begin();
   const auto last = static_cast<std::size_t>(std::max<std::ptrdiff_t>(beyond - 1, 0));
   if (between == BetweenRows::stepwise || last + 1 == rows_x_m.size() || x_m <= rows_x_m[last])
@@ -152,7 +152,7 @@ void require_allowed(const Case& config, const std::vector<double>& x_m,
   }
 }
 
-/// Of t, V_i and theta_i two decide the third, at all nodes the same.
+/// Two of t, V_i and theta_i decide the third, at all nodes the same.
 void require_one_initial_state(const Case& config, const std::vector<FrictionLaw>& laws) {
   if (!config.friction.has_state()) return;
   const FrictionAlongX& along_x = config.friction_along_x;
@@ -201,7 +201,7 @@ std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<doubl
   if (along_x.random_key != "none") apply_field(config, x_m, laws);
   require_one_initial_state(config, laws);
   for (auto& law : laws)
-    if (config.prestress.t_Pa) settle_slip_rate(law, *config.prestress.t_Pa, config.prestress.p_Pa);
+    if (config.prestress.t_Pa) set_initial_slip_rate(law, *config.prestress.t_Pa, config.prestress.p_Pa);
   require_allowed(config, x_m, laws);
   return laws;
 }
@@ -258,7 +258,7 @@ interface::ContactModel contact_model(const Case& config, const std::vector<doub
   if (config.friction.has_state()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
   const auto laws = friction_at(config, x_m);
   if (!laws.empty())
-    model.of_nodes = interface::NodeLaws(
+    model.law_per_node = interface::NodeLaws(
         places.of(laws), std::ranges::any_of(laws, [](const FrictionLaw& law) { return strengthens(law); }));
   return model;
 }

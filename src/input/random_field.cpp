@@ -17,7 +17,7 @@ double uniform(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
-/// Of mean 0 and variance 1 (Box and Muller 1958).
+/// A normal number of mean 0 and variance 1 (Box and Muller 1958).
 double normal(std::mt19937_64& random) {
   const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
   return radius * std::cos(two_pi * uniform(random));

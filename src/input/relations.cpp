@@ -58,7 +58,7 @@ void check_state(const Case& config) {
         .about(law.name);
 }
 
-/// Of theta_i, V_i and t two decide the third.
+/// Two of theta_i, V_i and t decide the third.
 void check_initial_state(const Case& config) {
   const auto& law = config.friction;
   const Key theta("friction.theta_i_s"), V("friction.V_i_m_per_s"), t("prestress.t_Pa");
@@ -71,7 +71,7 @@ void check_initial_state(const Case& config) {
   if (!config.prestress.t_Pa) return;
   const double V_i = law.parameter(leaf_of(V.name));
   auto settled = law;
-  settle_slip_rate(settled, *config.prestress.t_Pa, config.prestress.p_Pa);
+  set_initial_slip_rate(settled, *config.prestress.t_Pa, config.prestress.p_Pa);
   const double follows = settled.parameter(leaf_of(V.name));
   constexpr double rounding = 1e-6;
   const Range& allowed = find_entry(law_of(config).entries, V.name)->range;

@@ -34,7 +34,7 @@ class CaseFile {
   /// @throws UserError with file, line and what to do: missing file, no key in it, syntax, unknown key (with
   /// the nearest known one), wrong type, value out of range, parameters that do not fit together, table.
   explicit CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
-  /// The same of a text, which may set no key if there are overrides.
+  /// Reads a text, which may set no key if there are overrides.
   explicit CaseFile(const CaseText& text, const std::vector<Override>& overrides = {});
 
   const Case& config() const { return config_; }
@@ -69,7 +69,7 @@ class CaseFile {
 /// The case alone.
 Case read_case(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
 
-/// The same from a text; `name` stands for the file in messages. No table is read.
+/// Parses a case from a text; `name` stands for the file in messages. No table is read.
 Case parse_case(const std::string& text, const std::string& name,
                 const std::vector<Override>& overrides = {});
 

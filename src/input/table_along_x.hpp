@@ -10,7 +10,7 @@
 // file, `place` that of the table, in messages.
 namespace slipfront::input {
 
-/// Of the interface's length: positions in a table are written with few digits.
+/// Tolerance over the interface's length: positions in a table are written with few digits.
 inline constexpr double position_tolerance = 1e-6;
 
 /// @throws UserError where a field is no finite number

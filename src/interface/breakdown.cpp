@@ -112,7 +112,7 @@ record::Breakdown breakdown_of(const ContactModel& model, const Interface& s, st
   for (std::size_t i = first; i < end; ++i) {
     const bool begun = b.peak_t_Pa[i] > 0;
     const auto put = [&](std::vector<double>& to, double value) { to.push_back(begun ? value : nan); };
-    // Of the traction at its peak above the residual one. Friction that has but risen falls by rounding.
+    // Work of the traction at its peak above the residual one. Friction that has but risen falls by rounding.
     const double fall = b.peak_coefficient[i] - b.least_coefficient[i];
     const bool weakens = fall > rounding * b.peak_coefficient[i] && b.work_J_per_m2[i] > 0;
     const double fall_Pa =

@@ -20,8 +20,8 @@ void follow_breakdown(const ContactModel& model, double dt_s, std::span<const do
 record::Breakdown breakdown_of(const ContactModel& model, const Interface& state, std::size_t first,
                                std::size_t end);
 
-/// The same of the samples of a history, its integrals by trapezoids. A node slips while |slip rate| is above
-/// threshold_m_per_s; slip begins with the sample before.
+/// Breakdown by the samples of a history, its integrals by trapezoids. A node slips while |slip rate| is
+/// above threshold_m_per_s; slip begins with the sample before.
 /// @pre numbers are finite, matrices of matching sizes
 record::Breakdown breakdown_from_history(const record::History& history, double threshold_m_per_s,
                                          double cohesion_Pa);

@@ -146,7 +146,7 @@ double traction_before_Pa(const FrictionLaw& law, double p_Pa) {
   });
 }
 
-void settle_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa) {
+void set_initial_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa) {
   visit(law, [&]<class Law>(const Law& l) {
     if constexpr (HasState<Law>)
       if (l.theta_i_s > 0) law.parameter("V_i_m_per_s") = l.slip_rate_before_m_per_s(t_Pa, p_Pa);

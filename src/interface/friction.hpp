@@ -24,7 +24,7 @@ namespace slipfront::interface {
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
 
-/// The same of a law with states that never sticks. [nodes]
+/// A law of one's own with states, which never sticks. [nodes]
 struct StateArrayLaw {
   using States = std::vector<std::vector<double>>;
   /// mu at slip rates V > 0; it rises with V, and is odd.
@@ -95,7 +95,7 @@ class FrictionLaw {
   void set_function(ArrayLaw function) { function_ = std::make_shared<const ArrayLaw>(std::move(function)); }
   /// Null where there is none.
   const ArrayLaw* function() const { return function_.get(); }
-  /// The same of a law with states, which begin as those of this law.
+  /// Sets a law with states, which begin as those of this law.
   void set_function(StateArrayLaw law) {
     state_function_ = std::make_shared<const StateArrayLaw>(std::move(law));
   }
@@ -165,9 +165,9 @@ std::optional<StateBreakdown> state_breakdown(const FrictionLaw& law, double t_P
 double traction_before_Pa(const FrictionLaw& law, double p_Pa);
 /// Gives a law with a state whose theta_i is given the V_i that follows from t and p; leaves others as they
 /// are.
-void settle_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa);
-/// Of a law that weakens with slip, the d_c of linear slip weakening with its coefficients and fracture
-/// energy.
+void set_initial_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa);
+/// d_c of the linear slip weakening with the coefficients and fracture energy of a law that weakens with
+/// slip.
 std::optional<double> weakening_slip_m(const FrictionLaw& law);
 /// Empty, or what is wrong with the parameters together.
 Message inconsistency(const FrictionLaw& law);

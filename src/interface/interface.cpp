@@ -61,7 +61,7 @@ void for_each_value(Interface& s, NodeOfLanes& n, Visit&& visit) {
   visit(in, s.initial_gap_m, n.initial_gap_m);
   visit(in, s.mass_per_length_kg_m2, n.mass_per_length_kg_m2);
   visit(in, s.tangential_mass_ratio, n.tangential_mass_ratio);
-  visit(in, s.intact, n.intact);
+  visit(in, s.strength_fraction, n.strength_fraction);
   visit(both, s.v_x_m_per_s, n.v_x_m_per_s);
   visit(both, s.v_y_m_per_s, n.v_y_m_per_s);
   visit(Flow<true, predicts>{}, s.u_y_m, n.u_y_m);
@@ -89,18 +89,18 @@ struct RegistryLaw {
   static constexpr bool strengthens = may_strengthen;
   static constexpr SlipMemory memory = Law::memory;
   static constexpr std::size_t n_states = n_states_of<Law>;
-  const NodeLaws* of_nodes;  ///< null where all have the same
+  const NodeLaws* law_per_node;  ///< null where all have the same
   double tip_slip_rate_m_per_s;
   ConstantsOf<Law, SimdVector> constants;
   RegistryLaw(const ContactModel& model, const Law& law)
-      : of_nodes(model.of_nodes.empty() ? nullptr : &model.of_nodes),
+      : law_per_node(model.law_per_node.empty() ? nullptr : &model.law_per_node),
         tip_slip_rate_m_per_s(model.tip_slip_rate_m_per_s),
         constants(in_lanes(model.law, law)) {
     set_tip();
   }
   void go_to(std::size_t node) {
-    if (!of_nodes) return;
-    constants = of_nodes->constants<Law>(node / lanes);
+    if (!law_per_node) return;
+    constants = law_per_node->constants<Law>(node / lanes);
     set_tip();
   }
   void set_tip() {
@@ -144,20 +144,22 @@ struct LawOverArrays {
 // Flattened: the compiler would keep the nodes in memory between these functions. The constants are copied:
 // what is written to the nodes cannot be theirs then, and they stay in registers. Not as an argument: clang
 // 14 aligns those on the stack to 32 bytes, where vectors may need 64.
-template <ContactAlgorithm algorithm, class Law, class Form>
-[[gnu::flatten, gnu::noinline]] bool update(const Law& given, const Form form, double dt_s, Interface& s) {
+template <ContactAlgorithm algorithm, class Law, class Regularised>
+[[gnu::flatten, gnu::noinline]] bool update(const Law& given, const Regularised regularisation, double dt_s,
+                                            Interface& s) {
   Law law = given;
   SimdMask changed{};
   const auto update_at = [&](auto at) {
     Node<SimdVector, Law::n_states> nodes{};
-    nodes.is_forced = s.is_forced;
-    for_each_value<algorithm, Form::remembers>(
+    nodes.is_time_weakening = s.is_time_weakening;
+    for_each_value<algorithm, Regularised::remembers>(
         s, nodes, [&]<bool in, bool out>(Flow<in, out>, const auto& array, auto& value) {
           if constexpr (in) value = at.read(array);
         });
     law.go_to(at.begin);
-    changed |= update_node<algorithm, Law::memory, Law::strengthens>(law.constants, form, dt_s, nodes);
-    for_each_value<algorithm, Form::remembers>(
+    changed |=
+        update_node<algorithm, Law::memory, Law::strengthens>(law.constants, regularisation, dt_s, nodes);
+    for_each_value<algorithm, Regularised::remembers>(
         s, nodes, [&]<bool in, bool out>(Flow<in, out>, auto& array, const auto& value) {
           if constexpr (out) at.write(array, value);
         });
@@ -170,8 +172,8 @@ template <ContactAlgorithm algorithm, class Law, class Form>
 
 /// The update by a law over arrays: again and again from the same state, each time with one more answer,
 /// until nothing is left to ask.
-template <ContactAlgorithm algorithm, class Form>
-bool update_by(const FrictionLaw& of, const Form& form, double dt_s, Interface& state) {
+template <ContactAlgorithm algorithm, class Regularised>
+bool update_by(const FrictionLaw& of, const Regularised& regularisation, double dt_s, Interface& state) {
   const ArrayLaw& law = *of.function();
   const std::size_t padded = (state.size() + lanes - 1) / lanes * lanes;
   Answers answers;
@@ -183,7 +185,7 @@ bool update_by(const FrictionLaw& of, const Form& form, double dt_s, Interface& 
     answers.speed_m_per_s.assign(padded, 0);
     answers.slip_m.assign(padded, 0);
     Interface trial = state;
-    const bool changed = update<algorithm>(asking, form, dt_s, trial);
+    const bool changed = update<algorithm>(asking, regularisation, dt_s, trial);
     if (!answers.asked) {
       state = std::move(trial);
       return changed;
@@ -199,13 +201,14 @@ bool update_by(const FrictionLaw& of, const Form& form, double dt_s, Interface& 
 
 void start_contact(const ContactModel& model, Interface& s) {
   s.begun = false;
-  with_form(model.regularisation, 0, [&](const auto& form) {
+  with_regularisation(model.regularisation, 0, [&](const auto& regularisation) {
     for (std::size_t i = 0; i < s.size(); ++i) {
       const FrictionLaw& law = model.law_at(i);
       const double mu_s = static_coefficient(law), mu_k = kinetic_coefficient(law);
-      const double mu_0 = Weakened<double>(mu_s, mu_k, s.intact[i], s.is_forced)(mu_s);
+      const double mu_0 =
+          ForcedWeakening<double>(mu_s, mu_k, s.strength_fraction[i], s.is_time_weakening)(mu_s);
       s.strength_Pa[i] = mu_0 * s.p_Pa[i] + (s.p_Pa[i] > 0 ? law.cohesion_Pa() : 0);
-      const auto memory = form.initial(mu_0, s.p_Pa[i]);
+      const auto memory = regularisation.initial(mu_0, s.p_Pa[i]);
       s.relaxed_Pa[i] = memory.relaxed_Pa;
       s.target_Pa[i] = memory.target_Pa;
       s.slip_m[i] = 0;
@@ -224,26 +227,27 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   const double since_last_s = state.begun ? dt_s : 0;
   state.begun = true;
   if (model.law.function())
-    return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+    return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
       return model.algorithm == ContactAlgorithm::direct
-                 ? update_by<ContactAlgorithm::direct>(model.law, form, dt_s, state)
-                 : update_by<ContactAlgorithm::predictor_corrector>(model.law, form, dt_s, state);
+                 ? update_by<ContactAlgorithm::direct>(model.law, regularisation, dt_s, state)
+                 : update_by<ContactAlgorithm::predictor_corrector>(model.law, regularisation, dt_s, state);
     });
   if (const auto* law = model.law.state_function())
-    return with_form(model.regularisation, since_last_s,
-                     [&](const auto& form) { return update_by(*law, model, form, dt_s, state); });
+    return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
+      return update_by(*law, model, regularisation, dt_s, state);
+    });
   return visit(model.law, [&]<class Law>(const Law& one) {
     const auto update_by_law = [&](const auto& law) {
-      return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+      return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
         if constexpr (!HasState<Law>)
           if (model.algorithm == ContactAlgorithm::predictor_corrector)
-            return update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
+            return update<ContactAlgorithm::predictor_corrector>(law, regularisation, dt_s, state);
         SLIPFRONT_ASSERT(model.algorithm == ContactAlgorithm::direct, "a state needs the direct algorithm");
-        return update<ContactAlgorithm::direct>(law, form, dt_s, state);
+        return update<ContactAlgorithm::direct>(law, regularisation, dt_s, state);
       });
     };
     if constexpr (requires { one.strengthens(); })
-      if (model.of_nodes.empty() ? one.strengthens() : model.of_nodes.some_strengthens())
+      if (model.law_per_node.empty() ? one.strengthens() : model.law_per_node.some_strengthens())
         return update_by_law(RegistryLaw<Law, true>(model, one));
     return update_by_law(RegistryLaw<Law, false>(model, one));
   });

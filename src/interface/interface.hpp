@@ -29,11 +29,13 @@ struct ContactModel {
   FrictionLaw law;
   Regularisation regularisation = {};
   ContactAlgorithm algorithm = ContactAlgorithm::direct;
-  NodeLaws of_nodes = {};  ///< instead of `law`, and of its type; empty where all nodes have that one
+  NodeLaws law_per_node = {};  ///< instead of `law`, and of its type; empty where all nodes have that one
   /// Under a law that never sticks a node counts as slipping beyond this slip rate.
   double tip_slip_rate_m_per_s = 0.1;
 
-  const FrictionLaw& law_at(std::size_t node) const { return of_nodes.empty() ? law : of_nodes[node]; }
+  const FrictionLaw& law_at(std::size_t node) const {
+    return law_per_node.empty() ? law : law_per_node[node];
+  }
 };
 
 /// What is known of breakdowns under way and of those that have ended. All arrays [nodes]
@@ -43,7 +45,7 @@ struct BreakdownState {
   std::vector<double> counted_coefficient, counted_slip_m;
   // Sums since slip began, impulses since the peak.
   std::vector<double> slip_m, work_of_t_J_per_m2, work_of_p_J_per_m2, impulse_of_t_Pa_s, impulse_of_p_Pa_s;
-  // Of the traction above the residual one, up to the least coefficient.
+  // Integrals of the traction above the residual one, up to the least coefficient.
   std::vector<double> work_J_per_m2, impulse_Pa_s;
 
   template <class Self>
@@ -74,9 +76,9 @@ struct Interface {
   std::vector<double> mass_per_length_kg_m2;  ///< lumped mass over tributary length
   /// Effective mass along x over that along y, mass_per_length_kg_m2: 1 but for nodes with dashpots.
   std::vector<double> tangential_mass_ratio;
-  /// 1 is the full law, 0 a node weakened for good: mu = mu_k + intact (mu_law - mu_k); is_forced: mu is that
-  /// of the law, but at most mu_k + intact (mu_s - mu_k).
-  std::vector<double> intact;
+  /// 1 is the full law, 0 a node weakened for good: mu = mu_k + intact (mu_law - mu_k); is_time_weakening: mu
+  /// is that of the law, but at most mu_k + intact (mu_s - mu_k).
+  std::vector<double> strength_fraction;
   // The motion, gathered from and scattered to the plate.
   std::vector<double> v_x_m_per_s, v_y_m_per_s;  ///< trial half-step velocity in, corrected velocity out
   /// Displacement at the start of the (sub-)step, to which the corrected velocity adds. The
@@ -102,7 +104,7 @@ struct Interface {
   std::vector<std::vector<double>> law_states;
   std::vector<std::uint8_t> breaking, broken;  ///< 1 while, and after, friction breaks down at a node
   BreakdownState breakdown;
-  bool is_forced = false;
+  bool is_time_weakening = false;
   bool begun = false;  ///< whether there was an update since start_contact
 
   explicit Interface(std::size_t n, std::span<const LawState> states_of_law = {});
@@ -132,7 +134,7 @@ inline constexpr std::array<InterfaceField, 20> interface_fields = {{
     {"initial_gap", "m", FieldKind::body, &Interface::initial_gap_m},
     {"mass_per_length", "kg/m2", FieldKind::body, &Interface::mass_per_length_kg_m2},
     {"tangential_mass_ratio", "1", FieldKind::body, &Interface::tangential_mass_ratio, 1},
-    {"intact", "1", FieldKind::load, &Interface::intact, 1},
+    {"strength_fraction", "1", FieldKind::load, &Interface::strength_fraction, 1},
     {"v_x", "m/s", FieldKind::memory, &Interface::v_x_m_per_s},
     {"v_y", "m/s", FieldKind::memory, &Interface::v_y_m_per_s},
     {"u_y", "m", FieldKind::trial, &Interface::u_y_m},
@@ -161,8 +163,8 @@ void for_each_field(State& state, F&& f) {
 }
 
 /// Begins the memory of friction in a state of given p: no slip yet, strength mu(0) p, relaxed strength or
-/// pressure in equilibrium with it, nodes under pressure in contact. `intact` is taken as it is: a patch that
-/// is weakened after this call loses its strength at the rate of the regularisation.
+/// pressure in equilibrium with it, nodes under pressure in contact. `strength_fraction` is taken as it is: a
+/// patch that is weakened after this call loses its strength at the rate of the regularisation.
 void start_contact(const ContactModel& model, Interface& state);
 
 /// Contact and friction update for lumped mass. Reads the trial motion and the memory, writes all results and

@@ -17,7 +17,7 @@ namespace slipfront::interface {
 /// An entry of each array of Interface.
 template <class V, std::size_t n_law_states = 0>
 struct Node {
-  V initial_gap_m, mass_per_length_kg_m2, tangential_mass_ratio, intact;
+  V initial_gap_m, mass_per_length_kg_m2, tangential_mass_ratio, strength_fraction;
   V v_x_m_per_s, v_y_m_per_s, u_y_m;
   V slip_rate_m_per_s, t_Pa, p_Pa, onset_ratio, strength_Pa;
   Mask<V> slipping;
@@ -26,22 +26,22 @@ struct Node {
   V acceleration_m_per_s2;
   Mask<V> locked;
   std::array<V, n_law_states> law_states;
-  bool is_forced = false;
+  bool is_time_weakening = false;
 };
 
-/// What is left of the coefficient of a node that may be weakened, see Interface::intact: exactly the law's
-/// where intact is 1.
+/// What is left of the coefficient of a node that may be weakened, see Interface::strength_fraction: exactly
+/// the law's where strength_fraction is 1.
 template <class V>
-struct Weakened {
-  V mu_k, intact, most;
-  Weakened(V mu_at_rest, V mu_k_, V intact_, bool is_forced)
-      : mu_k(mu_k_), intact(intact_), most(V{} + infinity) {
-    if (!is_forced) return;
-    most = select(intact < 1, mu_k + intact * (mu_at_rest - mu_k), most);
-    intact = V{} + 1;
+struct ForcedWeakening {
+  V mu_k, strength_fraction, most;
+  ForcedWeakening(V mu_at_rest, V mu_k_, V intact_, bool is_time_weakening)
+      : mu_k(mu_k_), strength_fraction(intact_), most(V{} + infinity) {
+    if (!is_time_weakening) return;
+    most = select(strength_fraction < 1, mu_k + strength_fraction * (mu_at_rest - mu_k), most);
+    strength_fraction = V{} + 1;
   }
   V operator()(V mu) const {
-    const V left = mu - (1 - intact) * (mu - mu_k);
+    const V left = mu - (1 - strength_fraction) * (mu - mu_k);
     return select(most < left, most, left);
   }
 };
@@ -76,7 +76,7 @@ inline constexpr int rate_evaluations = 3;
 /// about its balance from step to step; then so far that a linear law comes to its balance in one step.
 /// @param softness  of the node: its impedance over d traction/d rate of friction
 template <class V>
-inline V share_of_later_rate(V softness) {
+inline V implicit_weight(V softness) {
   return select(softness < 0.5, 1 - softness, V{} + 0.5);
 }
 
@@ -93,7 +93,7 @@ struct Strengthening {
   Strengthening(const Mu& mu_, V slip, V compliance_, V last_rate, V v_trial)
       : mu(mu_), slip_m(slip), compliance(compliance_) {
     const V g = slope(last_rate);
-    w = share_of_later_rate(1 / select(g > 2, g, V{} + 2));
+    w = implicit_weight(1 / select(g > 2, g, V{} + 2));
     w = select(last_rate * v_trial < 0, V{} + 1, w);
   }
   V slope(V rate) const { return positive_part(mu.slope_s_per_m(absolute(rate), slip_m)) * compliance; }
@@ -109,18 +109,19 @@ struct Strengthening {
 /// @param impedance_x  effective mass along x over tributary length and dt
 /// @tparam strengthens_somewhere  whether the law of any node does
 template <ContactAlgorithm algorithm, SlipMemory slip_memory, bool strengthens_somewhere, class Mu,
-          class Form, class V>
-inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s, V impedance_x, Node<V>& n) {
+          class Regularised, class V>
+inline void slide(const LawConstants<Mu, V>& law, const Regularised& regularisation, double dt_s,
+                  V impedance_x, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
   const Mu& mu = law.mu;
   const V p = n.p_Pa;
   const V cohesion = select(p > 0, law.cohesion_Pa, V{});
-  const Weakened<V> weakened(law.mu_at_rest, law.mu_k, n.intact, n.is_forced);
+  const ForcedWeakening<V> weakened(law.mu_at_rest, law.mu_k, n.strength_fraction, n.is_time_weakening);
   const auto coefficient = [&](V speed, V slip) { return weakened(mu(speed, slip)); };
 
   const V last_rate = n.slip_rate_m_per_s;  // since the last update
-  const auto step = form.step(absolute(last_rate));
+  const auto step = regularisation.step(absolute(last_rate));
 
   const V v_trial = n.v_x_m_per_s;
   const V t_stop = v_trial * impedance_x;
@@ -140,8 +141,8 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
   const auto evaluate = [&] {
     evaluated_at = rate;
     const V mu_now = coefficient(absolute(rate), n.slip_m);
-    now = form.now(step, n.memory, mu_now, p);
-    strength = form.strength(mu_now, p, now) + cohesion;
+    now = regularisation.now(step, n.memory, mu_now, p);
+    strength = regularisation.strength(mu_now, p, now) + cohesion;
     sticks = along <= strength;  // not the contrary, so that a motion that is not a number is seen as slip
     t = select(sticks, t_stop, copy_sign(strength, direction));
     v_x = select(sticks, V{}, v_trial - t / impedance_x);
@@ -171,7 +172,7 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
   V mu_stuck = weakened(law.mu_at_rest);
   if constexpr (slip_memory != SlipMemory::none) mu_stuck = coefficient(V{}, slip);
-  const V strength_at_rest = form.strength(mu_stuck, p, now) + cohesion;
+  const V strength_at_rest = regularisation.strength(mu_stuck, p, now) + cohesion;
 
   if constexpr (predicts) n.acceleration_m_per_s2 = select(sticks, V{}, (v_x - last_rate) * (1 / dt_s));
   n.v_x_m_per_s = v_x;
@@ -188,13 +189,15 @@ inline void slide(const LawConstants<Mu, V>& law, const Form& form, double dt_s,
 /// Friction of a law with a state, psi, that never sticks: the state of this time and the slip rate V at this
 /// time give t. V is between the half-step velocities before and after, w of the way. The fewer nodes are so
 /// stiff that V is not in the middle the shorter the step, and on a given mesh the order two remains.
-template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Form, class V>
-inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, double dt_s, V impedance_x,
-                  Node<V, 1>& n) {
+template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Regularised, class V>
+inline void slide(const StateLawConstants<Law, V>& constants, const Regularised& regularisation, double dt_s,
+                  V impedance_x, Node<V, 1>& n) {
   const auto& law = constants.law;
   const V last_rate = n.slip_rate_m_per_s;
-  const Memory<V> now = form.now(form.step(absolute(last_rate)), n.memory, V{} + 1, n.p_Pa);
-  const V pressure = form.strength(V{} + 1, n.p_Pa, now);  // 0 where the node is open, or has just landed
+  const Memory<V> now =
+      regularisation.now(regularisation.step(absolute(last_rate)), n.memory, V{} + 1, n.p_Pa);
+  const V pressure =
+      regularisation.strength(V{} + 1, n.p_Pa, now);  // 0 where the node is open, or has just landed
   const Mask<V> in_contact = pressure > 0;
   const V p = select(in_contact, pressure, V{} + 1);
 
@@ -202,9 +205,9 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, 
   const V v_trial = n.v_x_m_per_s;
   const V of_psi = psi * law.per_a, s = select(of_psi < least_state, V{} + least_state, of_psi);
   const V a_p = law.a * p, per_a_p = 1 / a_p;
-  // Of the mass over that of the friction, a p/V.
+  // Stiffness of the mass over that of the friction, a p/V.
   const V softness = absolute(last_rate) * impedance_x * per_a_p;
-  V w = share_of_later_rate(softness);
+  V w = implicit_weight(softness);
   V t{}, v_x{}, rate{};
   const auto solve = [&] {
     rate = w * v_trial + (1 - w) * last_rate;
@@ -235,11 +238,11 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Form& form, 
 }
 
 /// @param law   ConstantsOf the node's law
-/// @param form  one of with_form's
+/// @param regularisation  one of with_regularisation's
 /// @return whether the node began or ceased to slip.
 template <ContactAlgorithm algorithm, SlipMemory slip_memory, bool strengthens_somewhere = false, class Law,
-          class Form, class N>
-inline auto update_node(const Law& law, const Form& form, double dt_s, N& n) {
+          class Regularised, class N>
+inline auto update_node(const Law& law, const Regularised& regularisation, double dt_s, N& n) {
   const double per_step = 1 / dt_s;
   const auto impedance = n.mass_per_length_kg_m2 * per_step;
   if constexpr (algorithm == ContactAlgorithm::predictor_corrector)
@@ -247,8 +250,8 @@ inline auto update_node(const Law& law, const Form& form, double dt_s, N& n) {
   else
     press_direct(n, impedance, per_step);
   const auto slipped = n.slipping;
-  slide<algorithm, slip_memory, strengthens_somewhere>(law, form, dt_s, impedance * n.tangential_mass_ratio,
-                                                       n);
+  slide<algorithm, slip_memory, strengthens_somewhere>(law, regularisation, dt_s,
+                                                       impedance * n.tangential_mass_ratio, n);
   return n.slipping != slipped;
 }
 

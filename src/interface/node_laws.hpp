@@ -21,7 +21,7 @@ struct LawConstants {
   V cohesion_Pa;
   V strengthens;  ///< 1 where mu rises with the slip rate somewhere, else 0
 };
-/// The same of a law with a state, which never sticks.
+/// Constants of a law with a state, which never sticks.
 /// @tparam Evolving  the law's evaluator for V
 template <class Evolving, class V>
 struct StateLawConstants {

@@ -10,8 +10,8 @@ namespace slipfront::interface {
 
 /// How a nucleation patch starts the event.
 enum class NucleationForm {
-  weakened,    ///< its friction falls to mu_k for good: Interface::intact = 1 - B(x)
-  forced,      ///< the same in time, from its centre at a speed, see Interface::is_forced
+  weakened,    ///< its friction falls to mu_k for good: Interface::strength_fraction = 1 - B(x)
+  forced,      ///< the same in time, from its centre at a speed, see Interface::is_time_weakening
   overstress,  ///< an external traction overstress_Pa B(x) along +x, times the trigger's ramp in time
 };
 

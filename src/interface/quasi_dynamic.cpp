@@ -10,7 +10,7 @@
 
 namespace slipfront::interface {
 
-/// Of all nodes, for the law that they have.
+/// Evaluators of all nodes, for the law that they have.
 struct QuasiDynamicFriction::Evaluators {
   Evaluators() = default;
   Evaluators(const Evaluators&) = delete;

@@ -55,7 +55,7 @@ struct Following {
   }
 };
 
-/// The same at the slip rate of a node, through a time dt.
+/// Relaxation at the slip rate of a node, through a time dt.
 struct Relaxation {
   double at_rest, dt_per_length_s_per_m;
   Relaxation(const Regularisation& r, double dt_s)
@@ -154,7 +154,7 @@ struct InitialPressure : RememberedPressure {
 
 /// Calls f with the form that the settings name. The choice is made once per contact update.
 template <class F>
-auto with_form(const Regularisation& r, double dt_s, F&& f) {
+auto with_regularisation(const Regularisation& r, double dt_s, F&& f) {
   if (r.relaxed == Relaxed::strength) return f(RelaxedStrength{{r, dt_s}});
   if (r.relaxed == Relaxed::pressure) return f(RelaxedPressure({r, dt_s}));
   if (r.relaxed == Relaxed::initial_pressure) return f(InitialPressure{});

@@ -50,9 +50,9 @@ class Bracket {
   bool done_ = true;
 };
 
-template <class Form>
-bool update_by(const StateArrayLaw& law, const ContactModel& model, const Form& form, double dt_s,
-               Interface& s) {
+template <class Regularised>
+bool update_by(const StateArrayLaw& law, const ContactModel& model, const Regularised& regularisation,
+               double dt_s, Interface& s) {
   using Values = std::vector<double>;
   const std::size_t n = s.size();
   const double per_step = 1 / dt_s;
@@ -68,9 +68,9 @@ bool update_by(const StateArrayLaw& law, const ContactModel& model, const Form& 
     s.v_y_m_per_s[i] = node.v_y_m_per_s;
     s.p_Pa[i] = node.p_Pa;
     impedance[i] = impedance_y * s.tangential_mass_ratio[i];
-    now[i] = form.now(form.step(std::abs(s.slip_rate_m_per_s[i])), {s.relaxed_Pa[i], s.target_Pa[i]}, 1.0,
-                      node.p_Pa);
-    pressure[i] = form.strength(1.0, node.p_Pa, now[i]);
+    now[i] = regularisation.now(regularisation.step(std::abs(s.slip_rate_m_per_s[i])),
+                                {s.relaxed_Pa[i], s.target_Pa[i]}, 1.0, node.p_Pa);
+    pressure[i] = regularisation.strength(1.0, node.p_Pa, now[i]);
   }
   Values speed(n), value(n), further(n);
   const auto evaluate = [&](Values& to) { law.coefficient(speed, s.law_states, to); };
@@ -84,11 +84,11 @@ bool update_by(const StateArrayLaw& law, const ContactModel& model, const Form& 
   evaluate(further);
   for (std::size_t i = 0; i < n; ++i) {
     const double softness = 2 * small * last(i) * impedance[i] / (pressure[i] * (further[i] - value[i]));
-    w[i] = share_of_later_rate(softness);
+    w[i] = implicit_weight(softness);
   }
 
-  /// Of nodes in contact: V from 0 to the rate without friction, where p mu(V) is what the mass takes of it;
-  /// over ln V, in which friction is nearly a straight line.
+  /// Slip rates of nodes in contact: V from 0 to the rate without friction, where p mu(V) is what the mass
+  /// takes of it; over ln V, in which friction is nearly a straight line.
   const auto solve = [&](auto&& concerns) {
     std::vector<Bracket> brackets(n);
     Values most(n), low(n), f_high(n), f_low(n);

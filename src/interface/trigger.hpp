@@ -25,7 +25,7 @@ inline bool is_at_edge(EventKind kind) {
 enum class TriggerForm {
   added,     ///< an external traction amount * (mu_s p_s - t_s)
   raised,    ///< one that raises t_s to amount * mu_s p_s
-  weakened,  ///< its friction is mu_k from the start: Interface::intact = 0
+  weakened,  ///< its friction is mu_k from the start: Interface::strength_fraction = 0
 };
 
 /// How a trigger's traction grows in time, to its full size at T = ramp_s.

@@ -40,16 +40,16 @@ struct Grid {
 };
 
 /// A boundary node that lets waves out: length of its boundary with the normal along x, and along y; or that
-/// the loading machine grips along one of them.
-struct AbsorbingNode {
+/// the loading machine holds along one of them.
+struct BoundaryNode {
   Node node = 0;
   double side_m = 0, top_m = 0;
   /// Stiffness, per unit thickness, of the spring between the machine and the node: infinite, it moves with
   /// the machine; 0, it bears a constant force; none, the machine has nothing to do with it.
-  std::optional<double> grip_x_N_per_m = {}, grip_y_N_per_m = {};
+  std::optional<double> spring_x_N_per_m = {}, spring_y_N_per_m = {};
 };
-inline bool is_spring(const std::optional<double>& grip_N_per_m) {
-  return grip_N_per_m && *grip_N_per_m != infinity;
+inline bool is_spring(const std::optional<double>& spring_N_per_m) {
+  return spring_N_per_m && *spring_N_per_m != infinity;
 }
 
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
@@ -66,14 +66,14 @@ struct Mesh {
   std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
   bool is_pushed = false;             ///< at its side; the machine holds the loaded edge along y alone then
-  bool is_gripped = false;  ///< under shear `absorbing` says what holds the loaded edge and what is pushed
+  bool has_machine = false;  ///< under shear `absorbing` says what holds the loaded edge and what is pushed
   std::vector<Node> pushed_nodes;  ///< those under the pusher, upwards; of columns that do not reach it none
   /// The loaded edge, where both its displacements are prescribed.
-  std::vector<Node> driven_nodes() const { return is_gripped ? std::vector<Node>{} : far_edge_nodes; }
+  std::vector<Node> driven_nodes() const { return has_machine ? std::vector<Node>{} : far_edge_nodes; }
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;
-  std::vector<AbsorbingNode> absorbing;
+  std::vector<BoundaryNode> boundary;
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
   /// Whether only the lowest row is held, see make_interface.
@@ -98,7 +98,7 @@ double distance_x_m(const Mesh& mesh, Node from, Node to);
 /// plate is periodic. [interface nodes], m.
 std::vector<double> tributary_lengths_m(const Mesh& mesh);
 
-/// Of all cells.
+/// Shortest side of all cells.
 double min_side_m(const Mesh& mesh);
 
 }  // namespace slipfront::mesh

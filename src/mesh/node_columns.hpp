@@ -26,7 +26,7 @@ class Subset {
   int number_at(int place) const;
   /// Without the numbers from `end` on.
   Subset below(int end) const;
-  /// Of values of the whole those of its numbers; none of none.
+  /// Values of its numbers among those of the whole; none of none.
   template <class T>
   std::vector<T> of(const std::vector<T>& values) const {
     if (ranges_.empty() || values.empty()) return values;
@@ -55,13 +55,13 @@ class NodeColumns {
  public:
   /// No nodes.
   NodeColumns() = default;
-  /// Of a whole plate or mesh; of a plate the interface is enough, see make_interface.
+  /// Columns of a whole plate or mesh; of a plate the interface is enough, see make_interface.
   explicit NodeColumns(const Mesh& whole);
-  /// Of a whole plate with these blocks, upwards.
+  /// Columns of a whole plate with these blocks, upwards.
   explicit NodeColumns(std::span<const Grid> blocks);
-  /// Of the columns `held` of a plate with n_columns columns of nodes.
+  /// The columns `held` of a plate with n_columns columns of nodes.
   NodeColumns(const Mesh& part, const Subset& held, int n_columns);
-  /// Of a subdomain that holds some columns of this whole.
+  /// Columns of a subdomain that holds some columns of this whole.
   NodeColumns of_subdomain(const Subset& held) const;
 
   int n_columns() const { return n_columns_; }  ///< of the whole

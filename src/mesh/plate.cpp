@@ -297,7 +297,7 @@ class Maker {
     name_interface_nodes();
     name_top();
     absorb();
-    grip();
+    hold();
     return std::move(mesh_);
   }
 
@@ -423,7 +423,7 @@ class Maker {
       for (int j = 0; j <= grid.rows; ++j)
         for (const int i : block.held) {
           if (is_orphan(block, i)) continue;
-          AbsorbingNode a{block.node(i, j)};
+          BoundaryNode a{block.node(i, j)};
           const bool at_top = last && j == grid.rows;
           if (sides && (i == 0 || i == grid.columns) && (!loaded || !at_top)) {
             const bool at_end = (first && j == 0) || at_top;
@@ -435,26 +435,26 @@ class Maker {
           }
           if (at_top && top)
             a.top_m = grid.spacing_m * (!is_periodic_ && (i == 0 || i == grid.columns) ? 0.5 : 1);
-          if (a.side_m > 0 || a.top_m > 0) mesh_.absorbing.push_back(a);
+          if (a.side_m > 0 || a.top_m > 0) mesh_.boundary.push_back(a);
         }
       if (sides && !last && has_inner(grid.columns) && block.has(grid.columns))
-        mesh_.absorbing.push_back({block.inner_node(grid.columns), grid.spacing_m, 0});
+        mesh_.boundary.push_back({block.inner_node(grid.columns), grid.spacing_m, 0});
     }
   }
 
   /// What holds the nodes of the loaded edge and under the pusher, where that is not the same for all.
-  void grip() {
+  void hold() {
     const auto& machine = plate_.machine;
     mesh_.is_pushed = plate_.pusher.is_there();
-    mesh_.is_gripped = mesh_.is_pushed || !machine.is_rigid();
-    if (!mesh_.is_gripped) return;
+    mesh_.has_machine = mesh_.is_pushed || !machine.is_rigid();
+    if (!mesh_.has_machine) return;
     find_pushed_nodes();
     const auto& pushed = mesh_.pushed_nodes;
     for (std::size_t k = 0; k < pushed.size(); ++k) {
       const auto y_m = [&](std::size_t j) { return mesh_.y_m[pushed[std::min(j, pushed.size() - 1)]]; };
       const double length_m = y_m(k + 1) - y_m(k == 0 ? 0 : k - 1), all_m = y_m(pushed.size()) - y_m(0);
       const double share = pushed.size() == 1 ? 1 : 0.5 * length_m / all_m;
-      mesh_.absorbing.push_back({.node = pushed[k], .grip_x_N_per_m = share * machine.shear_stiffness_Pa});
+      mesh_.boundary.push_back({.node = pushed[k], .spring_x_N_per_m = share * machine.shear_stiffness_Pa});
     }
     const auto& grid = blocks_.back().grid;
     for (const Node n : mesh_.far_edge_nodes) {
@@ -462,10 +462,10 @@ class Maker {
       const bool is_end = !is_periodic_ && (x_m < half_m || x_m > plate_.width_m - half_m);
       const double share = (is_end ? half_m : grid.spacing_m) / plate_.width_m;
       const bool is_corner = !pushed.empty() && pushed.back() == n;
-      auto& node = is_corner ? mesh_.absorbing[pushed.size() - 1] : mesh_.absorbing.emplace_back();
+      auto& node = is_corner ? mesh_.boundary[pushed.size() - 1] : mesh_.boundary.emplace_back();
       node.node = n;
-      if (!mesh_.is_pushed) node.grip_x_N_per_m = share * machine.shear_stiffness_Pa;
-      node.grip_y_N_per_m = share * machine.normal_stiffness_Pa;
+      if (!mesh_.is_pushed) node.spring_x_N_per_m = share * machine.shear_stiffness_Pa;
+      node.spring_y_N_per_m = share * machine.normal_stiffness_Pa;
     }
   }
 

@@ -93,7 +93,7 @@ struct Plate {
 /// @throws UserError for an impossible geometry, naming the quantity to change.
 Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 
-/// Of a plate without fillets the nodes of the lowest row alone, in the grids of the whole plate and without
+/// The nodes of the lowest row alone of a plate without fillets, in the grids of the whole plate and without
 /// cells: what is known of a plate whose columns are held elsewhere. The whole plate may have more nodes than
 /// can be numbered.
 Mesh make_interface(const Plate& plate, std::string_view table = "plate");

@@ -7,7 +7,7 @@ namespace slipfront::mesh {
 
 namespace {
 
-/// Of each node those that share a cell with it.
+/// Nodes that share a cell with each node.
 using Neighbours = std::vector<std::vector<Node>>;
 
 Neighbours neighbours(const Mesh& mesh) {
@@ -76,7 +76,7 @@ void renumber(Mesh& mesh, std::span<const Node> number) {
     for (Node& n : cell) n = number[n];
   for (auto* nodes : {&mesh.interface_nodes, &mesh.far_edge_nodes, &mesh.pushed_nodes})
     for (Node& n : *nodes) n = number[n];
-  for (auto& a : mesh.absorbing) a.node = number[a.node];
+  for (auto& a : mesh.boundary) a.node = number[a.node];
   mesh.grid = {.spacing_m = old.grid.spacing_m};
   mesh.coarser.clear();
 }

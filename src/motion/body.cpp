@@ -20,7 +20,7 @@ int rolling_columns(const solid::Operator& op) {
 
 BodySteps steps_of(const BodySource& source, double omega, const TimeStepping& time) {
   // The eigenvalues of two stiffnesses together are at most the sum of both largest ones.
-  omega = std::hypot(omega, largest_grip_frequency_rad_per_s(source.mesh, source.material));
+  omega = std::hypot(omega, largest_spring_frequency_rad_per_s(source.mesh, source.material));
   const double stable_s = solid::stable_step_s(omega, source.material.stiffness_damping_s);
   return {stable_s, step_multiples(source.mesh, source.material, time, stable_s)};
 }
@@ -33,7 +33,7 @@ BodyMotion motion_of(const BodySource& source) {
                     {},
                     {},
                     {},
-                    Grips(source.mesh, source.material)};
+                    MachineSprings(source.mesh, source.material)};
   if (source.part == nullptr) {
     motion.columns = mesh::NodeColumns(source.mesh);
     return motion;
@@ -130,7 +130,7 @@ void Body::start(const solid::Field& u_m, const solid::Field& u_per_shear, doubl
   }
   for (auto& level : levels_.level)
     if (!level.shared.node.empty()) find_equilibrium_load(level);
-  motion_.grips.start(motion_.u_m, top_speed_m_per_s);
+  motion_.springs.start(motion_.u_m, top_speed_m_per_s);
   to_single(motion_, single_);
   works_ = {};
   if (motion_.damping_s > 0) begin_damping_work();
@@ -250,9 +250,9 @@ void Body::add_to(StateView& state) {
         {level.edge_kick_m_per_s.x, level.edge_kick_m_per_s.y});
     level.damping_work.add_to(state);
   }
-  std::vector<StateArray> of_grips;
-  for (auto* values : motion_.grips.arrays()) of_grips.emplace_back(*values);
-  add(motion_.grips.nodes().size(), motion_.grips.nodes().data(), std::move(of_grips));
+  std::vector<StateArray> of_springs;
+  for (auto* values : motion_.springs.arrays()) of_springs.emplace_back(*values);
+  add(motion_.springs.nodes().size(), motion_.springs.nodes().data(), std::move(of_springs));
   interface_.landing.add_to(state);
   for (const auto& term : record::energy_terms) state.sums.push_back(&(works_.*term.member));
 }
@@ -277,10 +277,10 @@ record::Energies Body::energies() {
   return e;
 }
 
-void Body::reverse(const solid::Field& u_m, Grips grips, double time_s) {
+void Body::reverse(const solid::Field& u_m, MachineSprings springs, double time_s) {
   motion_.u_m = u_m;
-  motion_.grips = std::move(grips);
-  motion_.grips.reverse();
+  motion_.springs = std::move(springs);
+  motion_.springs.reverse();
   for (auto* values : {&motion_.v_m_per_s.x, &motion_.v_m_per_s.y})
     for (double& value : *values) value = -value;
   for (auto& level : levels_.level) {

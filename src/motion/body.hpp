@@ -25,7 +25,7 @@ struct BodyStep {
   record::Energies works;
 };
 
-/// Of a whole body.
+/// Steps of a whole body.
 BodySteps body_steps(const BodySource& body, const TimeStepping& time);
 
 /// A deformable body without contact: its cells in levels with different time steps, and its motion. Its
@@ -124,9 +124,9 @@ class Body {
   void append_mean_velocity(std::vector<double> solid::Field::*component, mesh::Node first, mesh::Node end,
                             std::vector<double>& to) const;
 
-  const Grips& grips() const { return motion_.grips; }
+  const MachineSprings& springs() const { return motion_.springs; }
   /// Turns the motion round at the places `u_m`, with the machine's forces there, see Stepper::reverse.
-  void reverse(const solid::Field& u_m, Grips grips, double time_s);
+  void reverse(const solid::Field& u_m, MachineSprings springs, double time_s);
 
  private:
   template <class F>

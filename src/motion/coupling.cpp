@@ -103,7 +103,7 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
     interface_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
     interface_.broken[i] = interface_.slipping[i];
   }
-  std::ranges::fill(interface_.intact, 1.0);
+  std::ranges::fill(interface_.strength_fraction, 1.0);
   start_contact(contact_, interface_);
   if (!loads.law_states.empty()) interface_.law_states = loads.law_states;
   // A patch that is weakened now loses its strength at the rate of the regularisation.
@@ -113,16 +113,16 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
 void Coupling::set_loads(Loads loads) {
   loads_ = std::move(loads);
   loads_.trigger_force_N_per_m.resize(interface_.size(), 0.0);
-  SLIPFRONT_ASSERT(loads_.intact.empty() || loads_.intact.size() == interface_.size(),
+  SLIPFRONT_ASSERT(loads_.strength_fraction.empty() || loads_.strength_fraction.size() == interface_.size(),
                    "intact of other nodes");
-  loads_.intact.resize(interface_.size(), 1.0);
-  interface_.intact = loads_.intact;
-  interface_.is_forced = !loads_.weakens_at_s.empty();
+  loads_.strength_fraction.resize(interface_.size(), 1.0);
+  interface_.strength_fraction = loads_.strength_fraction;
+  interface_.is_time_weakening = !loads_.weakens_at_s.empty();
   trigger_nodes_.clear();
   weakening_nodes_.clear();
   for (std::size_t i = 0; i < interface_.size(); ++i) {
     if (loads_.trigger_force_N_per_m[i] != 0) trigger_nodes_.push_back(i);
-    if (!loads_.weakens_at_s.empty() && loads_.intact[i] < 1) weakening_nodes_.push_back(i);
+    if (!loads_.weakens_at_s.empty() && loads_.strength_fraction[i] < 1) weakening_nodes_.push_back(i);
   }
   weaken(0);
 }
@@ -131,7 +131,7 @@ void Coupling::weaken(double time_s) {
   for (const auto i : weakening_nodes_) {
     const double since_s = time_s - loads_.weakens_at_s[i], all_s = loads_.weakening_time_s;
     const double share = since_s >= all_s ? 1 : std::max(0.0, since_s / all_s);
-    interface_.intact[i] = 1 - share * (1 - loads_.intact[i]);
+    interface_.strength_fraction[i] = 1 - share * (1 - loads_.strength_fraction[i]);
   }
 }
 
@@ -223,7 +223,7 @@ void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, dou
     v_x[i] += sign * per_pressure * (loads_.prestress_t_Pa[i] + growth_t_Pa);
     v_y[i] -= per_pressure * (loads_.prestress_p_Pa[i] + growth_p_Pa);
   }
-  for (const auto& [i, n, d_x, d_y, grip] : body.side->dashpots) {
+  for (const auto& [i, n, d_x, d_y, spring] : body.side->dashpots) {
     // The contact's tractions act on the effective mass m (1 + d).
     v_x[i] = (v_x[i] - d_x * v_x_before[i]) / (1 + d_x);
     v_y[i] = (v_y[i] - d_y * v_y_before[i]) / (1 + d_y);

@@ -28,7 +28,7 @@ struct Loads {
   /// below are opposite.
   std::vector<double> trigger_force_N_per_m = {};
   interface::Trigger trigger = {};
-  std::vector<double> intact = {};  ///< weakens nodes for good, see Interface::intact
+  std::vector<double> strength_fraction = {};  ///< weakens nodes for good, see Interface::strength_fraction
   /// When they are forced to weaken, linearly over the time; or empty: at once.
   std::vector<double> weakens_at_s = {};
   double weakening_time_s = 0;
@@ -43,12 +43,12 @@ struct Loads {
   /// The arrays with a value for each interface node, but for law_states.
   template <class State>
   static auto arrays(State& l) {
-    return std::array{&l.intact, &l.trigger_force_N_per_m, &l.prestress_t_Pa, &l.prestress_p_Pa,
+    return std::array{&l.strength_fraction, &l.trigger_force_N_per_m, &l.prestress_t_Pa, &l.prestress_p_Pa,
                       &l.weakens_at_s};
   }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(prestress_t_Pa, prestress_p_Pa, trigger_force_N_per_m, trigger, intact, weakens_at_s,
+    archive(prestress_t_Pa, prestress_p_Pa, trigger_force_N_per_m, trigger, strength_fraction, weakens_at_s,
             weakening_time_s, prestress_rate, law_states, light_Pa);
   }
 };
@@ -94,9 +94,9 @@ class Coupling {
       for (auto* values : {&side.v_x, &side.v_y}) visit(values->data() + nodes.begin, n);
   }
   SlipRates slip_rates() const;
-  /// Of own nodes.
+  /// Breakdown of own nodes.
   record::Breakdown breakdown() const;
-  /// Of a node whose tractions are not balanced.
+  /// Acceleration of a node whose tractions are not balanced.
   double largest_acceleration_m_per_s2() const;
 
   /// Adds all that changes, and the loads, to a stepper's state, which has the bodies.
@@ -142,7 +142,7 @@ class Coupling {
   /// Relative, of the update under way. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;
   std::vector<Side> sides_;                   ///< of two bodies; else none
-  Loads loads_;                               ///< forces and intact of all nodes
+  Loads loads_;                               ///< forces and strength_fraction of all nodes
   std::vector<std::size_t> trigger_nodes_;    ///< where the force is not zero
   std::vector<std::size_t> weakening_nodes_;  ///< whose friction falls during the event
   /// By how much the prescribed tractions have grown at the update under way.

@@ -66,7 +66,7 @@ class DampingWork {
   /// @param after_K_w, after_K_u  v' K w and v' K u of the last impulse
   double work(double after_K_w, double after_K_u) const;
 
-  /// Of the last impulse: u K u and v K v before it, and v' K w as far as it was known at once.
+  /// Products of the last impulse: u K u and v K v before it, and v' K w as far as it was known at once.
   struct Last {
     double u_K_u = 0, v_K_v = 0, after_K_w = 0;
   };

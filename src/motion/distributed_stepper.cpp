@@ -345,7 +345,7 @@ StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_s
     };
   halo_->advance(log, n_steps, callbacks);
   const auto& memory = finder_->memory();
-  // Of nodes along the interface only own ones.
+  // Only own nodes of the interface count.
   const auto own = stepper_->bodies().front().interface_side().own;
   const auto width = stepper_->interface_state().size();
   const auto append_own = [&]<class T>(const std::vector<T>& values, std::size_t row, std::vector<T>& to) {

@@ -149,7 +149,7 @@ class DistributedStepper final : public TimeStepper {
   Steps advance_guaranteed(SlipObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks);
   /// The steps in the own subdomain.
   StepReport advance_own(const std::vector<std::uint8_t>& is_sampled);
-  /// Of own nodes, with what one of the whole interface knows.
+  /// Makes the finder of own nodes, with what one of the whole interface knows.
   void make_finder(const SlipFinder& whole);
   /// Adds tractions around onsets near a subdomain's end, which the subdomains beside it know.
   void add_tractions_of_others(SlipUpdates& seen, std::size_t n_around);

@@ -39,7 +39,7 @@ EventRun::EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor&
 
 Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output,
                               Observers more) {
-  const auto& [state, mu_s, waves, loads_settle_s, time, sampling, halo, sticks_within, slow_m_per_s] = setup;
+  const auto& [state, mu_s, waves, loads_settle_s, time, sampling, halo, stop_window, slow_m_per_s] = setup;
   const double step_s = stepper_.step_s();
   const auto n_steps = steps_of(time, step_s);
   const auto start = stepper_.energies();
@@ -54,10 +54,10 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   list.push_back(std::make_unique<EnergyRows>(start, sampling.energy_interval_s, step_s, time.end_s));
   list.push_back(std::make_unique<Snapshots>(sampling.snapshot_times_s, *output));
   list.push_back(std::make_unique<BlowUpMonitor>(stepper_, waves.c_L_m_per_s, time.precision, start));
-  if (sticks_within)
+  if (stop_window)
     list.push_back(std::make_unique<StickCriterion>(
-        state, *sticks_within, time.quiet_s,
-        stuck_slip_fraction * slip_rate_scale_m_per_s(state, mu_s, waves), slow_m_per_s));
+        state, *stop_window, time.quiet_s, stuck_slip_fraction * slip_rate_scale_m_per_s(state, mu_s, waves),
+        slow_m_per_s));
   else
     list.push_back(std::make_unique<RestCriterion>(stepper_, slip_rate_scale_m_per_s(state, mu_s, waves),
                                                    loads_settle_s, time.quiet_s));

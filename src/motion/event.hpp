@@ -66,7 +66,7 @@ struct EventSetup {
   Sampling sampling;
   int halo = 0;  ///< nodes on each side whose tractions are kept at an onset
   /// The event ends when nodes between these places stick, see StickCriterion; none: see RestCriterion.
-  std::optional<Stretch> sticks_within = {};
+  std::optional<Interval> stop_window = {};
   double slow_m_per_s = infinity;  ///< with that: slip rate of an equilibrium
 };
 
@@ -85,7 +85,7 @@ class EventRun {
   Event run();
 
   const std::vector<record::Energies>& energies() const { return run_.get<EnergyRows>().rows(); }
-  /// Of what has happened so far.
+  /// Record of what has happened so far.
   record::SlipRecord record() const { return run_.get<Onsets>().record_until(stepper_.time_s()); }
   const record::TipSlip& tip_slip() const { return run_.get<TipSlips>().record(); }
 

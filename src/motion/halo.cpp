@@ -49,7 +49,7 @@ Halo::Halo(Processes& processes, const Partition& partition, Stepper& stepper, d
 }
 
 void Halo::make_stages(int columns, double stage_bytes) {
-  // The same for all subdomains: of rows alone, and of the halo's width. Bodies move row beside row, and are
+  // Equal for all subdomains: of rows alone, and of the halo's width. Bodies move row beside row, and are
   // cut at the same ones, a body that has less of them in fewer stages.
   const int n_bands = stepper_.n_bands();
   std::vector<int> n_rows, n_first;

@@ -32,7 +32,7 @@ class Halo {
   /// Exchanges it, and begins to count steps to the next exchange. Displacements and velocities in double
   /// precision stay as they are until a step is taken.
   void renew();
-  /// The same without an exchange: it is right.
+  /// Begins anew without an exchange, where the halo is right.
   void begin_anew();
   /// Takes steps, all of them, and exchanges the halo where it is due.
   void advance(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks);

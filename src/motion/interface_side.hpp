@@ -20,7 +20,7 @@ struct InterfaceSide {
   Landing landing;
 };
 
-/// Of a body with these masses of its nodes; without dashpots and landing.
+/// The side of a body with these masses of its nodes; without dashpots and landing.
 /// @param motion  of a part of a body says which nodes are owned, for the runs alone
 inline InterfaceSide make_interface_side(const mesh::Mesh& mesh, const std::vector<double>& mass_kg,
                                          const BodyMotion& motion) {

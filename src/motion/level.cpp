@@ -93,7 +93,7 @@ void compute_top(StepLevel& level, const BodyMotion& body, W&& w, record::Energi
     level.top_force_N.x[r] = x;
     level.top_force_N.y[r] = y;
     const auto n = level.top_rows.node[r];
-    if (body.is_owned(n)) works.top_work += level.step_s * x * body.v_m_per_s.x[n];
+    if (body.is_owned(n)) works.far_edge_work += level.step_s * x * body.v_m_per_s.x[n];
   });
 }
 
@@ -203,7 +203,7 @@ void push_boundary(const StepLevel& level, const Band& band, BodyMotion& body, r
     const auto& dashpot = level.dashpots[k];
     const auto n = dashpot.node;
     const solid::Pair trial{v.x[n] - dt * level.a_x[dashpot.at], v.y[n] - dt * level.a_y[dashpot.at]};
-    const auto after = damp(dashpot, body.grips, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, {v.x[n], v.y[n]},
+    const auto after = damp(dashpot, body.springs, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, {v.x[n], v.y[n]},
                             trial, body.is_owned(n) ? works : not_counted);
     v.x[n] = after.x;
     v.y[n] = after.y;
@@ -269,21 +269,21 @@ solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, sol
   const double mean_x = 0.5 * (before.x + trial.x) / (1 + d_x);
   const double mean_y = 0.5 * (before.y + trial.y) / (1 + d_y);
   works.boundary_work -= 2 * mass_kg * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
-  if (holds_x) works.top_work += mass_kg * (before.x - trial.x) * before.x;
-  if (holds_y) works.top_work += mass_kg * (before.y - trial.y) * before.y;
+  if (holds_x) works.far_edge_work += mass_kg * (before.x - trial.x) * before.x;
+  if (holds_y) works.far_edge_work += mass_kg * (before.y - trial.y) * before.y;
   return {holds_x ? before.x : trial.x - 2 * d_x * mean_x, holds_y ? before.y : trial.y - 2 * d_y * mean_y};
 }
 
 }  // namespace
 
-solid::Pair damp(const Dashpot& dashpot, Grips& grips, double step_s, double mass_kg, solid::Pair u_m,
-                 solid::Pair before, solid::Pair trial, record::Energies& works) {
-  if (dashpot.grip == Grips::none) return damp(dashpot, mass_kg, before, trial, works);
-  const auto force_N = grips.force(dashpot.grip, u_m);
+solid::Pair damp(const Dashpot& dashpot, MachineSprings& springs, double step_s, double mass_kg,
+                 solid::Pair u_m, solid::Pair before, solid::Pair trial, record::Energies& works) {
+  if (dashpot.spring == MachineSprings::none) return damp(dashpot, mass_kg, before, trial, works);
+  const auto force_N = springs.force(dashpot.spring, u_m);
   const double s_per_kg = step_s / mass_kg;
   const auto after =
       damp(dashpot, mass_kg, before, {trial.x + s_per_kg * force_N.x, trial.y + s_per_kg * force_N.y}, works);
-  grips.move(dashpot.grip, step_s, force_N, before, after, works);
+  springs.move(dashpot.spring, step_s, force_N, before, after, works);
   return after;
 }
 
@@ -500,7 +500,7 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
     const double kick_x = dt * s.equilibrium_load_m_per_s2.x[k] + s.impulse_m_per_s.x[k];
     const double kick_y = dt * s.equilibrium_load_m_per_s2.y[k] + s.impulse_m_per_s.y[k];
     const solid::Pair before{s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k]};
-    const auto after = damp(dashpot, body.grips, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, before,
+    const auto after = damp(dashpot, body.springs, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, before,
                             {v.x[n] + kick_x, v.y[n] + kick_y}, body.is_owned(n) ? works : not_counted);
     v.x[n] = after.x - kick_x;
     v.y[n] = after.y - kick_y;

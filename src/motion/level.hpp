@@ -11,7 +11,7 @@
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/damping_work.hpp"
-#include "motion/grips.hpp"
+#include "motion/machine_springs.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
 #include "solid/kernels.hpp"
@@ -26,12 +26,12 @@ struct BodyMotion {
   double damping_s = 0;
   solid::Field u_m, v_m_per_s;
   mesh::NodeColumns columns;
-  /// Of a part of a larger body the owned nodes, which enter energies and works: per row as places in it, and
+  /// Owned nodes of a part of a larger body, which enter energies and works: per row as places in it, and
   /// per node. A run, or a span of a stencil row, is owned as a whole or not at all. Empty for a whole body,
   /// which owns all its nodes.
   std::vector<solid::Span> own;
   std::vector<bool> is_own;
-  Grips grips = {};
+  MachineSprings springs = {};
 
   bool is_owned(int row, solid::Span nodes) const {
     return own.empty() || (nodes.begin >= own[row].begin && nodes.begin < own[row].end);
@@ -55,7 +55,7 @@ struct Dashpot {
   std::size_t at = 0;  ///< row of the level, shared node, or interface node
   mesh::Node node = 0;
   double d_x = 0, d_y = 0;
-  std::size_t grip = Grips::none;  ///< place among the body's
+  std::size_t spring = MachineSprings::none;  ///< place among the body's
 };
 
 /// Nodes of a level's cells that belong to finer cells, too, and move with the finer level's steps. Of the
@@ -148,7 +148,7 @@ struct StepLevels {
 };
 
 /// The dashpot of an absorbing node that moves with steps step_s; at is 0.
-Dashpot make_dashpot(const mesh::AbsorbingNode& absorbing, const solid::Material& material, double mass_kg,
+Dashpot make_dashpot(const mesh::BoundaryNode& absorbing, const solid::Material& material, double mass_kg,
                      double step_s);
 
 /// @throws UserError where the interface rows do not fit into the mesh.
@@ -175,7 +175,7 @@ CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::sp
 struct LevelReach {
   int period = 1, columns = 1;
 };
-/// Of a body's levels, coarsest first.
+/// Reaches of a body's levels, coarsest first.
 std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
                                         std::span<const int> multiples);
 
@@ -194,10 +194,10 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
                        const MaxOverSubdomains& largest = {});
 
 /// Velocity of a dashpot's node at u_m after a kick that alone would lead from `before` to `trial`; the works
-/// of the dashpot and of what grips the node are added to `works`.
+/// of the dashpot and of what springs the node are added to `works`.
 /// @param step_s  with which it moves
-solid::Pair damp(const Dashpot& dashpot, Grips& grips, double step_s, double mass_kg, solid::Pair u_m,
-                 solid::Pair before, solid::Pair trial, record::Energies& works);
+solid::Pair damp(const Dashpot& dashpot, MachineSprings& springs, double step_s, double mass_kg,
+                 solid::Pair u_m, solid::Pair before, solid::Pair trial, record::Energies& works);
 
 /// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
 void set_motion_before(StepLevel& level, const BodyMotion& body);
@@ -215,7 +215,7 @@ SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op
 /// Nothing where there are no such rows.
 void to_single(const BodyMotion& body, SingleRows& single);
 void to_double(const SingleRows& single, BodyMotion& body);
-/// The same as apply_band_impulse for one of these bands.
+/// Applies the impulse of one of these bands, as apply_band_impulse does.
 /// @param w  holds the row below at the first of these bands, and after the last one its last row and the
 /// next
 void apply_band_impulse(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
@@ -241,7 +241,7 @@ double coupling_work(const StepLevel& level, const BodyMotion& body);
 /// ImpulseProducts::next_velocity_K_w of a band, once all velocities after the last impulse are known.
 double next_velocity_product(const StepLevel& level, const Band& band, const BodyMotion& body);
 
-/// Of the displacements u and the velocities v, K the stiffness of a level's cells.
+/// Products of displacements u and velocities v with K, the stiffness of a level's cells.
 struct StiffnessProducts {
   double u_K_u = 0, v_K_u = 0;
 };

@@ -121,15 +121,15 @@ void set_bands(StepLevel& level, const BodyMotion& body, const std::vector<int>&
 /// nodes, or with its level.
 void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Material& material,
                   const BodyMotion& body) {
-  for (const auto& absorbing : mesh.absorbing) {
+  for (const auto& absorbing : mesh.boundary) {
     const auto n = absorbing.node;
     const std::size_t l = levels.level_of_node[n];
     auto& level = levels.level[l];
     auto dashpot = make_dashpot(absorbing, material, body.op.mass_kg[n], level.step_s);
-    dashpot.grip = body.grips.place(n);
+    dashpot.spring = body.springs.place(n);
     if (const auto i = place(mesh.interface_nodes, n)) {
-      SLIPFRONT_ASSERT(!absorbing.grip_x_N_per_m && !absorbing.grip_y_N_per_m,
-                       "a machine grips the interface");
+      SLIPFRONT_ASSERT(!absorbing.spring_x_N_per_m && !absorbing.spring_y_N_per_m,
+                       "a machine springs the interface");
       dashpot.at = *i;
       levels.contact_dashpots.push_back(dashpot);
     } else if (const auto k = l > 0 ? place(levels.level[l - 1].shared.node, n) : std::nullopt) {
@@ -148,13 +148,13 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
 
 }  // namespace
 
-Dashpot make_dashpot(const mesh::AbsorbingNode& absorbing, const solid::Material& material, double mass_kg,
+Dashpot make_dashpot(const mesh::BoundaryNode& absorbing, const solid::Material& material, double mass_kg,
                      double step_s) {
   const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
-  const auto& [node, side_m, top_m, grip_x, grip_y] = absorbing;
+  const auto& [node, side_m, top_m, spring_x, spring_y] = absorbing;
   const double factor = 0.5 * step_s * material.density_kg_per_m3 / mass_kg;
-  return {0, node, grip_x == infinity ? infinity : factor * (c_L * side_m + c_S * top_m),
-          grip_y == infinity ? infinity : factor * (c_S * side_m + c_L * top_m)};
+  return {0, node, spring_x == infinity ? infinity : factor * (c_L * side_m + c_S * top_m),
+          spring_y == infinity ? infinity : factor * (c_S * side_m + c_L * top_m)};
 }
 
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body) {
@@ -201,7 +201,7 @@ std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& m
       if (in_block[c])
         for (const auto n : mesh.cells[c]) of_block[n] = true;
     const double omega = std::hypot(solid::largest_cell_frequency_rad_per_s(mesh, material, in_block),
-                                    largest_grip_frequency_rad_per_s(mesh, material, of_block));
+                                    largest_spring_frequency_rad_per_s(mesh, material, of_block));
     const double ratio = overestimate * solid::stable_step_s(omega, damping_s) / stable_step_s;
     for (multiples[b] = 1 << b; multiples[b] > ratio * (1 + 1e-9) && multiples[b] > 1;) multiples[b] /= 2;
   }

@@ -53,7 +53,7 @@ int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySte
 /// @param columns_per_step  see there
 /// @param reach             columns beyond its own that a subdomain looks at
 Partition partition_columns(const mesh::Mesh& mesh, int n_subdomains, int columns_per_step, int reach);
-/// The same for bodies with grids.
+/// Partition of bodies with grids.
 /// @param steps  of each body
 /// @throws UserError where the subdomains would be too narrow for their halo, would end at a rounded corner,
 /// or

@@ -58,11 +58,11 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.u_m = body.v_m_per_s = body.load_m_per_s2 = body.impulse_m_per_s = body.v_last_m_per_s =
       solid::Field(n);
   body.dashpots.resize(n);
-  body.grips = Grips(mesh, material);
-  for (const auto& absorbing : mesh.absorbing) {
+  body.springs = MachineSprings(mesh, material);
+  for (const auto& absorbing : mesh.boundary) {
     const auto a = absorbing.node;
     auto dashpot = make_dashpot(absorbing, material, body.mass_kg[a], body.levels[levels.of_node[a]].step_s);
-    dashpot.grip = body.grips.place(a);
+    dashpot.spring = body.springs.place(a);
     if (!body.is_in_contact[a]) {
       body.dashpots[a] = dashpot;
       continue;
@@ -161,7 +161,7 @@ void PlainStepper::start(const statics::Equilibrium& equilibrium, double top_spe
     body.v_last_m_per_s = body.v_m_per_s;
     body.load_m_per_s2 = body.impulse_m_per_s = solid::Field(n);
     body.works = {};
-    body.grips.start(body.u_m, speed);
+    body.springs.start(body.u_m, speed);
     for (auto& level : body.levels) {
       level.force_N = level.damping_force_N = level.v_seen_m_per_s = solid::Field(n);
       level.u_before_m = body.u_m;
@@ -194,10 +194,10 @@ StateView PlainStepper::state() {
     for (auto* field : fields) arrays.insert(arrays.end(), {field->x, field->y});
     state.lists.push_back(
         {StateKey::node, state.bodies.size(), body.mass_kg.size(), nullptr, std::move(arrays)});
-    std::vector<StateArray> of_grips;
-    for (auto* values : body.grips.arrays()) of_grips.emplace_back(*values);
-    state.lists.push_back({StateKey::node, state.bodies.size(), body.grips.nodes().size(),
-                           body.grips.nodes().data(), std::move(of_grips)});
+    std::vector<StateArray> of_springs;
+    for (auto* values : body.springs.arrays()) of_springs.emplace_back(*values);
+    state.lists.push_back({StateKey::node, state.bodies.size(), body.springs.nodes().size(),
+                           body.springs.nodes().data(), std::move(of_springs)});
     state.bodies.emplace_back();
     body.side.landing.add_to(state);
     for (const auto& term : record::energy_terms) state.sums.push_back(&(body.works.*term.member));

@@ -26,7 +26,7 @@ double light_pressure_Pa(const std::vector<double>& p_Pa, const std::vector<doub
   return share * force_N_per_m / length_m;
 }
 
-double SlowSlip::fastest_m_per_s() const {
+double QuasiDynamicState::fastest_m_per_s() const {
   double fastest = 0;
   for (const double V : slip_rate_m_per_s) fastest = std::max(fastest, std::abs(V));
   return fastest;
@@ -46,7 +46,7 @@ QuasiDynamicSlip::QuasiDynamicSlip(const statics::Statics& statics, interface::Q
   for (auto& rates : stages_) resize(rates);
 }
 
-void QuasiDynamicSlip::balance(SlowSlip& state, Rates& rates) const {
+void QuasiDynamicSlip::balance(QuasiDynamicState& state, Rates& rates) const {
   bodies_->equilibrate(state.shear_m, state.u_x_m, state.t_Pa, state.p_Pa, state.gap_m);
   friction_.balance(state.t_Pa, state.p_Pa, state.psi, state.slip_rate_m_per_s, rates.psi);
   rates.u_x = state.slip_rate_m_per_s;
@@ -76,11 +76,13 @@ bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
     if (now_.fastest_m_per_s() >= slip_rate_m_per_s) return true;
     if (now_.time_s + next_dt_s_ == now_.time_s)
       throw UserError(
-          "{:.6g} s after the tilt slow slip changes faster than its time can be told; choose a smaller {}",
-          now_.time_s, Key("sequence.inertia_slip_rate_m_per_s"));
-    const double rest_s = end_s - now_.time_s;
-    const bool is_last = next_dt_s_ >= rest_s;
-    const double taken_s = try_step(std::min(next_dt_s_, rest_s));
+          "the time step of slow slip fell below rounding {:.6g} s after normal loading; choose a faster "
+          "load ({}), "
+          "or a smaller {}",
+          now_.time_s, Key("loading.shear_speed_over_c_L"), Key("sequence.inertia_slip_rate_m_per_s"));
+    const double remaining_s = end_s - now_.time_s;
+    const bool is_last = next_dt_s_ >= remaining_s;
+    const double taken_s = try_step(std::min(next_dt_s_, remaining_s));
     if (taken_s == 0) continue;
     if (next_.fastest_m_per_s() > beyond * slip_rate_m_per_s) {
       next_dt_s_ = 0.5 * taken_s;
@@ -106,8 +108,9 @@ void QuasiDynamicSlip::settle_contact() {
     balance(now_, rates_);
     add_works(before, now_);
   }
-  throw UserError("{:.6g} s after the tilt contact at the interface does not settle; press the bodies harder",
-                  now_.time_s);
+  throw UserError(
+      "{:.6g} s after normal loading contact at the interface does not settle; press the bodies harder",
+      now_.time_s);
 }
 
 bool QuasiDynamicSlip::correct_contact() {
@@ -175,7 +178,7 @@ double QuasiDynamicSlip::try_step(double dt_s) {
   return error > 1 ? 0 : dt_s;
 }
 
-void QuasiDynamicSlip::add_works(const SlowSlip& from, const SlowSlip& to) {
+void QuasiDynamicSlip::add_works(const QuasiDynamicState& from, const QuasiDynamicState& to) {
   double force_N_per_m = 0;
   for (std::size_t i = 0; i < tributary_m_.size(); ++i) {
     const double half_m = 0.5 * tributary_m_[i], eta = friction_.radiation_damping_Pa_s_per_m();

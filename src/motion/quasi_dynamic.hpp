@@ -18,7 +18,7 @@ namespace slipfront::motion {
 double light_pressure_Pa(const std::vector<double>& p_Pa, const std::vector<double>& tributary_m);
 
 /// Slip of an interface whose bodies are in equilibrium at all times. All lists [interface nodes].
-struct SlowSlip {
+struct QuasiDynamicState {
   double time_s = 0;
   double shear_m = 0;         ///< of the loaded edge along x
   std::vector<double> u_x_m;  ///< relative to a base
@@ -62,7 +62,7 @@ class QuasiDynamicSlip {
   /// @param after_step  whether another step may follow
   bool slip_until(double end_s, double slip_rate_m_per_s, const std::function<bool()>& after_step);
 
-  const SlowSlip& state() const { return now_; }
+  const QuasiDynamicState& state() const { return now_; }
   /// Since start.
   const SlowWorks& works() const { return works_; }
   std::int64_t n_steps() const { return n_steps_; }
@@ -73,10 +73,10 @@ class QuasiDynamicSlip {
     std::vector<double> u_x, psi;
   };
   /// Finds what follows from the places, psi and the shear of a state.
-  void balance(SlowSlip& state, Rates& rates) const;
+  void balance(QuasiDynamicState& state, Rates& rates) const;
   /// One step of at most dt_s. @return its length, 0 where its error was too large
   double try_step(double dt_s);
-  void add_works(const SlowSlip& from, const SlowSlip& to);
+  void add_works(const QuasiDynamicState& from, const QuasiDynamicState& to);
   /// Lets nodes that would be pulled go, and those that come down touch.
   void settle_contact();
   bool correct_contact();
@@ -86,7 +86,7 @@ class QuasiDynamicSlip {
   std::vector<double> tributary_m_;
   double edge_speed_m_per_s_;
   std::unique_ptr<statics::SlidingInterface> bodies_;
-  SlowSlip now_, next_;
+  QuasiDynamicState now_, next_;
   Rates rates_;                  ///< now
   std::array<Rates, 3> stages_;  ///< of a step, after the first
   SlowWorks works_;

@@ -40,23 +40,23 @@ class RampStates final : public Observer {
         to_m_(setup.tilted.inside_to_m) {}
 
   std::int64_t expected_steps() const { return max_steps_ / 2; }
-  statics::Equilibrium common, spontaneous;  ///< empty before
+  statics::Equilibrium subcritical, supercritical;  ///< empty before
 
   bool after_step(const Now& /*now*/, const SlipRates& /*rates*/) override {
     reaches_common_ = reaches(1 - setup_.loading.critical_margin);
     reaches_handover_ = reaches_common_ && reaches(1 - ramp_handover);
-    return !(has_common_ ? reaches_handover_ : reaches_common_);
+    return !(has_subcritical_ ? reaches_handover_ : reaches_common_);
   }
   std::int64_t steps_to_pause(const Now& now) const override {
     return std::min(renewal_interval - now.step % renewal_interval, max_steps_ + 1 - now.step);
   }
   void at_pause(Pause& pause) override {
-    if (!has_common_ && reaches_common_) {
-      common = state_now();
-      has_common_ = true;
+    if (!has_subcritical_ && reaches_common_) {
+      subcritical = state_now();
+      has_subcritical_ = true;
     }
     if (reaches_handover_) {
-      spontaneous = state_now();
+      supercritical = state_now();
     } else if (const auto step = pause.now().step; step > 0 && step % renewal_interval == 0) {
       const statics::Equilibrium e = state_now();
       from_m_ = e.inside_from_m;
@@ -74,14 +74,14 @@ class RampStates final : public Observer {
   }
 
   const char* name() const override { return "ramp"; }
-  void archive(StateArchive& archive) override { archive(common, has_common_, from_m_, to_m_); }
+  void archive(StateArchive& archive) override { archive(subcritical, has_subcritical_, from_m_, to_m_); }
   void restored(Pause& pause) override {
     const auto& tilted = setup_.tilted;
     require_possible(pause.now().step >= 0 && pause.now().step <= max_steps_ + 1, "steps");
     require_possible(std::isfinite(from_m_) && std::isfinite(to_m_), "times of motion");
-    require_possible(!has_common_ || (statics::is_possible(common, tilted.tractions.x_m, tilted.u_m.size(),
-                                                           tilted.below_u_m.size()) &&
-                                      common.u_m.size() == tilted.u_m.size()),
+    require_possible(!has_subcritical_ || (statics::is_possible(subcritical, tilted.tractions.x_m,
+                                                                tilted.u_m.size(), tilted.below_u_m.size()) &&
+                                           subcritical.u_m.size() == tilted.u_m.size()),
                      "an equilibrium");
   }
 
@@ -140,7 +140,7 @@ class RampStates final : public Observer {
   const Stepper& stepper_;
   const RampSetup setup_;
   std::int64_t max_steps_;
-  bool has_common_ = false, reaches_common_ = false, reaches_handover_ = false;
+  bool has_subcritical_ = false, reaches_common_ = false, reaches_handover_ = false;
   /// The contact's extent changes slowly; the peak is looked for between bounds that are renewed at times.
   double from_m_, to_m_;
 };
@@ -167,7 +167,7 @@ RampRun::RampRun(Stepper& stepper, const RampSetup& setup, const Monitor& monito
 
 std::uint64_t Ramp::n_onsets_inside() const {
   return static_cast<std::uint64_t>(std::ranges::count_if(record.onsets, [&](const record::Onset& onset) {
-    return spontaneous.is_inside(record.x_m[onset.node]);
+    return supercritical.is_inside(record.x_m[onset.node]);
   }));
 }
 
@@ -175,7 +175,7 @@ Ramp RampRun::run() {
   const End end = run_.run();
   if (end.why == EventEnd::blow_up) throw BlowUp(end.reason);
   auto& states = run_.get<RampStates>();
-  return {std::move(states.common), std::move(states.spontaneous),
+  return {std::move(states.subcritical), std::move(states.supercritical),
           run_.get<Onsets>().record_until(stepper_.time_s()), stepper_.step(),
           end.why == EventEnd::interrupted};
 }

@@ -17,20 +17,20 @@ inline constexpr double ramp_handover = 1e-5;
 
 /// States that the explicit ramp reaches, and what happened on the way.
 struct Ramp {
-  statics::Equilibrium common;       ///< at (1 - critical_margin) mu_s inside
-  statics::Equilibrium spontaneous;  ///< just before mu_s is reached inside
-  record::SlipRecord record;         ///< of all slip during the ramp
+  statics::Equilibrium subcritical;    ///< at (1 - critical_margin) mu_s inside
+  statics::Equilibrium supercritical;  ///< just before mu_s is reached inside
+  record::SlipRecord record;           ///< of all slip during the ramp
   std::int64_t steps = 0;
   bool interrupted = false;
 
   /// Beginnings of slip inside: where it came within a step before t/p was seen near mu_s.
   std::uint64_t n_onsets_inside() const;
   /// Whether t/p passed from less than (1 - critical_margin) mu_s to slip within a step.
-  bool passed_margin_in_a_step() const { return common.shear_m == spontaneous.shear_m; }
+  bool passed_margin_in_a_step() const { return subcritical.shear_m == supercritical.shear_m; }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(common, spontaneous, record, steps, interrupted);
+    archive(subcritical, supercritical, record, steps, interrupted);
   }
 };
 

@@ -52,7 +52,7 @@ struct PlainBody {
   std::vector<bool> is_in_contact, is_loaded;
   std::vector<PlainLevel> levels;  ///< coarsest first
   std::vector<Dashpot> dashpots;   ///< of absorbing nodes not in contact, with d = 0 for all others
-  Grips grips;
+  MachineSprings springs;
   InterfaceSide side;
   /// What the contact moves.
   ContactBody contact() { return {&side, &u_m, &v_m_per_s}; }
@@ -95,7 +95,7 @@ inline void kick(PlainBody& body, PlainLevel& level) {
     }
   }
   for (std::size_t n = 0; n < u.size(); ++n)
-    if (body.is_loaded[n]) body.works.top_work += dt * level.force_N.x[n] * body.v_m_per_s.x[n];
+    if (body.is_loaded[n]) body.works.far_edge_work += dt * level.force_N.x[n] * body.v_m_per_s.x[n];
   level.v_seen_m_per_s = v;
   level.u_before_m = u;
 }
@@ -113,7 +113,7 @@ inline void move(PlainBody& body, const PlainLevel& level) {
     const double kick_x = dt * body.load_m_per_s2.x[n] + body.impulse_m_per_s.x[n];
     const double kick_y = dt * body.load_m_per_s2.y[n] + body.impulse_m_per_s.y[n];
     body.impulse_m_per_s.x[n] = body.impulse_m_per_s.y[n] = 0;
-    const auto after = damp(body.dashpots[n], body.grips, dt, body.mass_kg[n], {u.x[n], u.y[n]},
+    const auto after = damp(body.dashpots[n], body.springs, dt, body.mass_kg[n], {u.x[n], u.y[n]},
                             {v_last.x[n], v_last.y[n]}, {v.x[n] + kick_x, v.y[n] + kick_y}, body.works);
     body.works.coupling_work +=
         0.5 * body.mass_kg[n] * (kick_x * (after.x + v_last.x[n]) + kick_y * (after.y + v_last.y[n]));

@@ -32,7 +32,7 @@ struct SlipUpdates {
 class SlipUpdateIterator {
  public:
   SlipUpdateIterator(const SlipUpdates& all, std::size_t n_around) : all_(all), n_around_(n_around) {}
-  /// Of the next update.
+  /// Slip of the next update.
   const SlipUpdate& next();
 
  private:
@@ -56,7 +56,7 @@ struct StepReport {
   void serialize(Archive& archive) {
     archive(memory, rates, seen, samples, displacements, is_interrupted);
   }
-  /// Of subdomains side by side, in their order.
+  /// Joins reports of subdomains side by side, in their order.
   static StepReport joined(std::vector<MessageBuffer> of_subdomains);
 };
 

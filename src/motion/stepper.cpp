@@ -219,17 +219,17 @@ void Stepper::reverse(UpdateObserver& observer) {
   // impulses, at the places before them. It keeps the steady forces on shared nodes, without which it would
   // be another.
   std::vector<solid::Field> u;
-  std::vector<Grips> grips;
+  std::vector<MachineSprings> springs;
   for (const auto& body : bodies_) {
     u.push_back(body.u_m());
-    grips.push_back(body.grips());
+    springs.push_back(body.springs());
   }
   advance_interface(step_, 1, observer, nullptr);
   for (int band = 0; band < n_bands_; ++band) advance_band(step_, static_cast<std::size_t>(band));
   coupling_.reverse();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     bodies_[b].sync_to_double();
-    bodies_[b].reverse(u[b], grips[b], time_s());
+    bodies_[b].reverse(u[b], springs[b], time_s());
   }
 }
 

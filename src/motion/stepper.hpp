@@ -31,7 +31,7 @@ struct Execution {
   int steps_per_sweep = 0;
   /// Most steps of a call of advance, which the threads share; 0 for many.
   int max_steps = 0;
-  /// Of a stage in which a part sends its halo, see Halo.
+  /// Size of a stage in which a part sends its halo, see Halo.
   double halo_stage_bytes = Processes::eager_limit_bytes;
 };
 
@@ -72,7 +72,7 @@ class Stepper : public TimeStepper {
   /// On another body, described upside down (see Body), with interface nodes at the same places along x.
   Stepper(const BodySource& above, const BodySource& below, const interface::ContactModel& contact,
           const TimeStepping& time, const Execution& execution = {});
-  /// Of one body or two, the one above first.
+  /// Steps one body or two, the one above first.
   Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
           const TimeStepping& time, const Execution& execution);
 
@@ -120,11 +120,11 @@ class Stepper : public TimeStepper {
   std::int64_t step() const override { return step_; }
   const solid::Field& u_m() const { return bodies_.front().u_m(); }
   const solid::Field& v_m_per_s() const { return bodies_.front().v_m_per_s(); }
-  /// The same with the mean velocity over the last step at nodes between sub-cycled and other cells, which
+  /// Velocities, with the mean one over the last step at nodes between sub-cycled and other cells, which
   /// the impulses set swinging within the step.
   solid::Field mean_velocity_m_per_s() const { return bodies_.front().mean_velocity_m_per_s(); }
   const interface::Interface& interface_state() const { return coupling_.state(); }
-  /// Of an interface node, see Coupling::slip_m.
+  /// Slip of an interface node, see Coupling::slip_m.
   double slip_m(std::size_t i) const { return coupling_.slip_m(i); }
 
   SlipRates slip_rates() const { return coupling_.slip_rates(); }
@@ -139,7 +139,7 @@ class Stepper : public TimeStepper {
   int n_snapshot_chunks() const override { return 1; }
   std::size_t snapshot_chunk_bytes() const override;
   std::vector<double> snapshot_chunk(int k) const override;
-  /// Of the nodes [first, end) of a body what a snapshot has.
+  /// Appends what a snapshot has of the nodes [first, end) of a body.
   void append(MotionComponent component, std::size_t body, mesh::Node first, mesh::Node end,
               std::vector<double>& to) const;
 
@@ -161,7 +161,7 @@ class Stepper : public TimeStepper {
       bodies_[b].visit_columns(columns, rows[b], and_interface, visit);
     if (and_interface) coupling_.visit_nodes(bodies_.front().interface_nodes_in(columns), visit);
   }
-  /// The same in all rows.
+  /// Visits these columns in all rows.
   template <class Visit>
   void visit_columns(solid::Span columns, Visit&& visit) {
     std::vector<solid::Span> rows;
@@ -180,7 +180,7 @@ class Stepper : public TimeStepper {
     set_loads(loads);
     update_after_restore(restore_chunks(state(), next));
   }
-  /// The same in parts. @param interface_nodes  of a subdomain, their places along the whole interface
+  /// The state in parts. @param interface_nodes  of a subdomain, their places along the whole interface
   StateView state(const mesh::Subset& interface_nodes = {});
   void set_loads(const Loads& loads) { coupling_.set_loads(loads); }
   void update_after_restore(std::int64_t step) {

@@ -214,7 +214,7 @@ class MpiProcesses final : public Processes {
   }
 
  private:
-  /// Of buffers, and of nothing; those of channels come after them.
+  /// Tags of buffers, and of nothing; those of channels come after them.
   static constexpr int tag = 0, no_tag = 1, first_channel = 2;
 
   static int as_count(std::size_t bytes) {

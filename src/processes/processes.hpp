@@ -66,7 +66,8 @@ class Processes {
   virtual void send(int to, const MessageBuffer& buffer) = 0;
   virtual MessageBuffer receive(int from) = 0;
   static constexpr std::size_t max_transfer_bytes = std::size_t{1} << 30;
-  /// Of a transfer that sets out without an answer of the other end: below the 64 KiB of Open MPI's over TCP.
+  /// Size of a transfer that sets out without an answer of the other end: below the 64 KiB of Open MPI's over
+  /// TCP.
   static constexpr std::size_t eager_limit_bytes = std::size_t{48} << 10;
   /// @param channel  not negative, the same at both ends; no other transfer between the two goes that way
   virtual std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) = 0;

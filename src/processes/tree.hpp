@@ -9,7 +9,7 @@ namespace slipfront {
 // come back the same way, so that none has more neighbours than the number of ranks has binary digits. Those
 // below a rank, with itself, have numbers one after the other.
 
-/// Of each but 0.
+/// Parent of each rank but 0.
 inline int parent_in_tree(int rank) {
   return rank & (rank - 1);
 }

@@ -46,7 +46,7 @@ template <class Owner>
 Array view_of(const std::vector<double>& values, const Owner& owner) {
   return Array(values.data(), {values.size()}, nb::find(owner));
 }
-/// The same of several.
+/// Views of several lists.
 template <class Owner>
 nb::typed<nb::list, Array> views_of(const std::vector<std::vector<double>>& all, const Owner& owner) {
   nb::list views;

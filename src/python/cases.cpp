@@ -172,7 +172,8 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
     throw UserError("{} is {}; a law in Python is of one event: set it to 1", Key("sequence.max_events"),
                     config.sequence.max_events);
   if (evolve && !config.friction.has_state())
-    throw UserError("evolve needs a law with a state, which {} = {} is not", law, config.friction.name());
+    throw UserError("evolve: {} = {} has no state variable; choose rate_and_state_*", law,
+                    config.friction.name());
   if (!evolve && config.friction.has_state())
     throw UserError("{} = {} has a state, which mu alone does not change; give evolve", law,
                     config.friction.name());
@@ -203,7 +204,7 @@ stability::WellPosedness well_posedness(const input::CaseFile& given, double pre
                                    longest_wavelength_m, config.regularisation);
 }
 
-/// Of the case's material in squares, without its geometry.
+/// Stable step of the case's material in squares, without its geometry.
 double stable_step_s(const input::CaseFile& given, double element_size_m) {
   const auto& material = given.config().material;
   return solid::stable_step_s(solid::frequency_of_squares_rad_per_s(element_size_m, material),
@@ -281,7 +282,7 @@ void bind_rupture(nb::module_& module) {
 
 void bind_info(nb::module_& module) {
   using I = run::Info;
-  using L = run::FoundLoads;
+  using L = run::ResolvedLoads;
   using M = run::MeshChoice;
   nb::class_<M>(module, "MeshChoice", "A mesh for a case's process zone.")
       .def_ro("element_size_m", &M::element_size_m)

@@ -116,16 +116,16 @@ class Stepper {
         contact_(input::contact_model(config_, x_m_)),
         stepper_(sources(threads), contact_, config_.time, {.threads = threads}) {}
 
-  void start(const nb::object& t_Pa, const nb::object& p_Pa, const nb::object& intact,
+  void start(const nb::object& t_Pa, const nb::object& p_Pa, const nb::object& strength_fraction,
              double shear_speed_m_per_s) {
     const auto n = x_m_.size();
     motion::Loads loads{.prestress_t_Pa = at_nodes(t_Pa, n, "t_Pa"),
                         .prestress_p_Pa = at_nodes(p_Pa, n, "p_Pa"),
-                        .intact = at_nodes(intact, n, "intact")};
+                        .strength_fraction = at_nodes(strength_fraction, n, "strength_fraction")};
     if (!std::ranges::all_of(loads.prestress_p_Pa, [](double p) { return p > 0; }))
       throw UserError("p_Pa must be above 0 at all nodes: the whole interface starts in contact");
-    if (!std::ranges::all_of(loads.intact, [](double share) { return share >= 0 && share <= 1; }))
-      throw UserError("intact must be between 0 and 1");
+    if (!std::ranges::all_of(loads.strength_fraction, [](double share) { return share >= 0 && share <= 1; }))
+      throw UserError("strength_fraction must be between 0 and 1");
     if (has_gaps(above_))
       throw UserError("start needs a mesh with corner = none: the whole interface starts in contact");
     const auto state = statics::prestressed(above_.mesh, {x_m_, loads.prestress_t_Pa, loads.prestress_p_Pa},
@@ -364,11 +364,13 @@ void bind_compose(nb::module_& module) {
                    "threads: int = 1, **time: object) -> None"),
            nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
       .def("__repr__", &S::text)
-      .def("start", &S::start, "t_Pa"_a, "p_Pa"_a, nb::kw_only(), "intact"_a = 1.0,
+      .def("start", &S::start, "t_Pa"_a, "p_Pa"_a, nb::kw_only(), "strength_fraction"_a = 1.0,
            "shear_speed_m_per_s"_a = 0.0,
            "Starts at rest, undeformed, under tractions on the interface: each a number or [interface "
            "nodes]. t_Pa drives the body above to +x, p_Pa > 0 presses it down, the opposite acts on a body "
-           "below. intact: 1, or less down to 0 for nodes weakened for good, mu = mu_k + intact (mu - mu_k). "
+           "below. strength_fraction: 1, or less down to 0 for nodes weakened for good, mu = mu_k + "
+           "strength_fraction "
+           "(mu - mu_k). "
            "shear_speed_m_per_s: of a loaded upper edge. Raises CaseError.")
       .def("start_from_statics", &S::start_from_statics, "share"_a.none() = nb::none(), "loading"_a,
            nb::sig("def start_from_statics(self, share: float | None = None, **loading: object) -> None"),

@@ -29,22 +29,22 @@ using kammer2012::Outcome;
 
 /// Where the interface is in contact, inside and at its largest t/p, as the statics would tell.
 void find_contact(const record::StaticState& state, double edge_margin_m, run::InitialState& initial) {
-  auto& common = initial.common;
+  auto& subcritical = initial.subcritical;
   const auto in_contact = [&](double p_Pa) { return p_Pa > 0; };
   const auto first = std::ranges::find_if(state.p_s_Pa, in_contact);
   require(first != state.p_s_Pa.end(), "p_s_Pa is nowhere above 0: nothing is in contact");
   const auto last = std::find_if(state.p_s_Pa.rbegin(), state.p_s_Pa.rend(), in_contact);
-  common.inside_from_m = state.x_m[first - state.p_s_Pa.begin()] + edge_margin_m;
-  common.inside_to_m = state.x_m[state.p_s_Pa.rend() - last - 1] - edge_margin_m;
-  common.peak_ratio = -infinity;
+  subcritical.inside_from_m = state.x_m[first - state.p_s_Pa.begin()] + edge_margin_m;
+  subcritical.inside_to_m = state.x_m[state.p_s_Pa.rend() - last - 1] - edge_margin_m;
+  subcritical.peak_ratio = -infinity;
   for (std::size_t k = 0; k < state.x_m.size(); ++k) {
     const double ratio = state.t_s_Pa[k] / state.p_s_Pa[k];
-    const bool inside = state.x_m[k] >= common.inside_from_m && state.x_m[k] <= common.inside_to_m;
-    if (!inside || !(state.p_s_Pa[k] > 0) || !(ratio > common.peak_ratio)) continue;
-    common.peak_ratio = ratio;
-    common.peak_x_m = state.x_m[k];
+    const bool inside = state.x_m[k] >= subcritical.inside_from_m && state.x_m[k] <= subcritical.inside_to_m;
+    if (!inside || !(state.p_s_Pa[k] > 0) || !(ratio > subcritical.peak_ratio)) continue;
+    subcritical.peak_ratio = ratio;
+    subcritical.peak_x_m = state.x_m[k];
   }
-  require(std::isfinite(common.peak_ratio), "t_s_Pa/p_s_Pa is defined nowhere inside the interface");
+  require(std::isfinite(subcritical.peak_ratio), "t_s_Pa/p_s_Pa is defined nowhere inside the interface");
 }
 
 /// An event from a user's arrays instead of a run.
@@ -55,15 +55,15 @@ Outcome make_outcome(const std::string& name, const input::CaseFile& given, cons
   const auto& config = given.config();
   const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
   run::InitialState initial;
-  initial.common.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
+  initial.subcritical.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
   initial.critical_shear_m = critical_shear_m;
-  find_contact(initial.common.tractions, config.loading.edge_margin_m, initial);
+  find_contact(initial.subcritical.tractions, config.loading.edge_margin_m, initial);
   run::Result result;
   result.config = config;
   result.speeds = run::wave_speeds(config.material);
   const auto options = run::front_options(config, initial);
   result.event.record = to_record(history, threshold_m_per_s, options.l_star_m);
-  result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
+  result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
   return kammer2012::make_outcome(name, result, initial);
 }
 

@@ -12,7 +12,7 @@ namespace {
 /// Taking Python's lock is cheap beside so much work, and nobody waits so long for Ctrl-C.
 constexpr double ask_every_s = 0.05;
 
-/// Of the run that this thread has begun.
+/// The watcher of the run that this thread has begun.
 thread_local Watcher* own_watcher = nullptr;
 
 bool is_stop_wanted() {

@@ -17,7 +17,7 @@ struct Energies {
   double time_s = 0;
   double kinetic = 0, strain = 0;
   double machine = 0;  ///< in its springs, and of constant forces what they can still do; since the start
-  double top_work = 0;
+  double far_edge_work = 0;
   double trigger_work = 0;
   double prestress_work = 0;
   double friction_work = 0;  ///< negative where it dissipates
@@ -50,7 +50,7 @@ inline constexpr std::array<EnergyTerm, 11> energy_terms = {{
     {{"machine_J_per_m", "J/m",
       "energy in the springs of the loading machine, less the work of constant forces", &Energies::machine},
      EnergyKind::stored},
-    {{"top_work_J_per_m", "J/m", "work of the moving top edge or machine", &Energies::top_work},
+    {{"top_work_J_per_m", "J/m", "work of the moving top edge or machine", &Energies::far_edge_work},
      EnergyKind::work},
     {{"trigger_work_J_per_m", "J/m", "work of the trigger's forces", &Energies::trigger_work},
      EnergyKind::work},

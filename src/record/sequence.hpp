@@ -19,7 +19,7 @@ enum class LoadingPhase : std::uint8_t {
   slip_ends,     ///< the motion with which an event ends
   at_rest,       ///< static equilibrium with the interface where that has left it
   loaded,        ///< static equilibrium at the end of the loading, before a next event
-  creeps,        ///< slow slip between events, under a law with a state
+  creep,         ///< slow slip between events, under a law with a state
 };
 inline constexpr const char* name(LoadingPhase phase) {
   constexpr std::array names = {"tilted", "event_begins", "slip_ends", "at_rest", "loaded", "creeps"};
@@ -44,7 +44,7 @@ struct LoadingRow {
   double fastest_slip_rate_m_per_s = 0;
   double pressure_moment_N = 0;
   double shear_height_m = nan;
-  /// What is stored, and works since the tilt; between static equilibria those of the mean forces.
+  /// What is stored, and works since normal loading; between static equilibria those of the mean forces.
   Energies energies;
   double wave_loss_J_per_m = 0;
 
@@ -59,8 +59,10 @@ struct LoadingRow {
 /// The columns of a row but for its phase, its events and the terms of its energies, which come before the
 /// last one.
 inline constexpr std::array<Column<LoadingRow, double>, 9> loading_fields = {{
-    {"time_s", "s", "time since the tilt, in which the top edge moves at its speed", &LoadingRow::time_s},
-    {"shear_m", "m", "displacement of the top edge or the pusher to +x since the tilt", &LoadingRow::shear_m},
+    {"time_s", "s", "time since normal loading, in which the top edge moves at its speed",
+     &LoadingRow::time_s},
+    {"shear_m", "m", "displacement of the top edge or the pusher to +x since normal loading",
+     &LoadingRow::shear_m},
     {"normal_force_N_per_m", "N/m", "sum of the pressure over the interface",
      &LoadingRow::normal_force_N_per_m},
     {"shear_force_N_per_m", "N/m", "sum of the tangential traction", &LoadingRow::shear_force_N_per_m},
@@ -96,7 +98,7 @@ inline constexpr std::size_t all_slow_rows = 4096;
 
 /// An event of a sequence, in numbers.
 struct SequenceEvent {
-  double begin_s = 0;  ///< since the tilt
+  double begin_s = 0;  ///< since normal loading
   double shear_m = 0;
   double begin_x_m = nan, from_x_m = nan, to_x_m = nan;
   double length_m = 0, longest_patch_m = 0, nucleation_length_m = nan;
@@ -115,7 +117,7 @@ struct SequenceEvent {
 };
 
 inline constexpr std::array<Column<SequenceEvent, double>, 26> sequence_event_fields = {{
-    {"begin_s", "s", "time since the tilt at which it begins", &SequenceEvent::begin_s},
+    {"begin_s", "s", "time since normal loading at which it begins", &SequenceEvent::begin_s},
     {"shear_m", "m", "displacement of the top edge or the pusher then", &SequenceEvent::shear_m},
     {"begin_x_m", "m", "where slip begins inside; the middle of nodes that begin together",
      &SequenceEvent::begin_x_m},

@@ -37,8 +37,8 @@ constexpr const char* kind_name = "kind";
 constexpr std::array names_of_run = {"case.resolved.toml", "run.json",   "interface.h5", "fronts.csv",
                                      "fracture.csv",       "static.csv", "energy.csv",   "fields.vtkhdf",
                                      "sequence.json",      "events.csv", "loading.csv"};
-/// Of a sequence: with a folder for each event, see event_folder, and for the slow slip before it, which has
-/// but a history.
+/// Folders of a sequence: one for each event, see event_folder, and one for the slow slip before it, which
+/// has but a history.
 constexpr const char* events_name = "events";
 constexpr const char* slow_name = "slow";
 

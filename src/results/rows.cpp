@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t piece_bytes = std::size_t{1} << 18U;
 /// A head is of whole blocks of a disk, with more than enough of them for all but texts and places.
 constexpr std::uint64_t block_bytes = 4096, metadata_bytes = 16 * block_bytes;
-/// Of these a file that is not finished has the length of its head.
+/// Bytes of a signature; a file that is not finished has the length of its head in them.
 constexpr std::size_t signature_bytes = 8;
 
 /// Adds what a file holds between two places, as far as it is there.

@@ -95,7 +95,7 @@ class Layout {
          const Origin& origin, const std::function<void(const hdf5::File&)>& describe,
          const std::vector<std::string>& behind = {});
 
-  /// Of the whole file.
+  /// Size of the whole file.
   std::uint64_t bytes() const { return bytes_; }
   const hdf5::Place& place_of(const std::string& name) const { return places_.at(name); }
   /// Puts the head into its place, and compares it: the file is finished. @throws WriteError

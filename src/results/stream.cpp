@@ -17,7 +17,7 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// Of the numbers in a row: the time and the fields.
+/// Names of the numbers in a row: the time and the fields.
 std::vector<const char*> names_of(const Table& table) {
   std::vector names = {table.time.name};
   for (const auto& field : table.fields) names.push_back(field.name);

@@ -45,7 +45,7 @@ class Batch {
   /// @throws Interrupted, and what a run or `done` throws first.
   void run(std::span<const input::Case> cases, const Done& done, const Usable& usable = {});
 
-  /// Of all calls.
+  /// Counts of all calls.
   const Counts& counts() const { return counts_; }
 
  private:

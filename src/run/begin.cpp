@@ -57,7 +57,7 @@ std::vector<double> trigger_forces(const input::Case& config, const statics::Equ
   return forces;
 }
 
-/// The same, and of a patch that is overstressed. [interface nodes]
+/// Forces of the trigger, and of a patch that is overstressed. [interface nodes]
 std::vector<double> starting_forces_N_per_m(const input::Case& config, const statics::Equilibrium& state,
                                             const PerNode& mu_s, const mesh::Mesh& mesh,
                                             std::span<const double> tributary_m) {
@@ -70,7 +70,7 @@ std::vector<double> starting_forces_N_per_m(const input::Case& config, const sta
   return forces;
 }
 
-/// Interface::intact of an event that begins with a weakened patch or zone; empty for others.
+/// Interface::strength_fraction of an event that begins with a weakened patch or zone; empty for others.
 std::vector<double> intact_shares(const input::Case& config, const statics::Equilibrium& state,
                                   const mesh::Mesh& mesh) {
   if (input::is_weakened_patch(config)) {
@@ -85,11 +85,12 @@ std::vector<double> intact_shares(const input::Case& config, const statics::Equi
 }
 
 /// Refuses an event that begins with weakening at nodes whose friction does not weaken.
-void require_weakening(const input::Case& config, const std::vector<double>& intact,
+void require_weakening(const input::Case& config, const std::vector<double>& strength_fraction,
                        const std::vector<interface::FrictionLaw>& laws) {
-  if (intact.empty() || laws.empty()) return;
+  if (strength_fraction.empty() || laws.empty()) return;
   for (std::size_t i = 0; i < laws.size(); ++i)
-    if (intact[i] < 1 && interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
+    if (strength_fraction[i] < 1 &&
+        interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
       return;
   throw UserError("{} = {} does nothing where friction does not weaken at any node; choose another form",
                   Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"),
@@ -139,15 +140,15 @@ motion::Loads starting_loads(const input::Case& config, const statics::Equilibri
   loads.trigger = config.trigger;
   loads.trigger_force_N_per_m =
       starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh, tributary_m);
-  loads.intact = intact_shares(config, state, mesh);
+  loads.strength_fraction = intact_shares(config, state, mesh);
   if (is_forced(config)) {
     for (const auto n : mesh.interface_nodes)
       loads.weakens_at_s.push_back(from_centre_m(config.nucleation, mesh.x_m[n], mesh.period_m) /
                                    config.nucleation.front_speed_m_per_s);
     loads.weakening_time_s = config.nucleation.weakening_time_s;
   }
-  if (!loads.intact.empty())
-    require_weakening(config, loads.intact, input::friction_at(config, interface_x_m(mesh)));
+  if (!loads.strength_fraction.empty())
+    require_weakening(config, loads.strength_fraction, input::friction_at(config, interface_x_m(mesh)));
   return loads;
 }
 

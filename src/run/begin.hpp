@@ -16,7 +16,7 @@ namespace slipfront::run {
 /// t/p at which nodes slip in the state before the event: static coefficients; with a cohesion the strength
 /// under the prescribed pressure over that. @param of_nodes  as below
 PerNode ratios_at_rest(const input::Case& config, const std::vector<double>& of_nodes);
-/// The same of each node; empty where all have the static coefficient of the case.
+/// t/p at rest of each node; empty where all have the static coefficient of the case.
 std::vector<double> ratios_at_rest(const input::Case& config, const mesh::Mesh& mesh);
 
 /// When the loads of a case's event last change; inf where they go on to.

@@ -26,6 +26,7 @@ const std::string magic = "slipfront checkpoint 9";
 
 constexpr std::size_t n_kept = 2;
 constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";
+constexpr const char* begun_file = "begun.bin";
 
 /// Checkpoints by their numbers.
 std::map<std::int64_t, fs::path> numbered(const fs::path& dir) {
@@ -39,6 +40,18 @@ std::map<std::int64_t, fs::path> numbered(const fs::path& dir) {
     if (std::from_chars(name.data() + prefix.size(), last, number).ptr == last) files[number] = k->path();
   }
   return files;
+}
+
+/// @throws UserError where it is damaged
+std::unique_ptr<Checkpoints::Checkpoint> open_checkpoint(const fs::path& file) {
+  auto kept = std::make_unique<Checkpoints::Checkpoint>(file);
+  std::string begin;
+  kept->body(begin);
+  if (begin != magic) throw UserError("{}: is damaged or of another version", file.string());
+  kept->body(kept->head);
+  require_possible(kept->head.sessions > 0 && kept->head.wall_s >= 0 && std::isfinite(kept->head.wall_s),
+                   "a session");
+  return kept;
 }
 
 }  // namespace
@@ -68,8 +81,8 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
   const auto n_nodes = [](const mesh::Mesh& mesh) { return static_cast<std::size_t>(mesh.n_nodes()); };
   const auto is_possible = [&](const auto& states) {
     const auto n_below = initial.base ? n_nodes(*initial.base) : 0;
-    return statics::is_possible(states.common, x_m, n_nodes(initial.mesh), n_below) &&
-           statics::is_possible(states.spontaneous, x_m, n_nodes(initial.mesh), n_below);
+    return statics::is_possible(states.subcritical, x_m, n_nodes(initial.mesh), n_below) &&
+           statics::is_possible(states.supercritical, x_m, n_nodes(initial.mesh), n_below);
   };
   const bool by_ramp = config.loading.method == statics::LoadingMethod::ramp;
   const auto count = [&](auto&& count_of) {
@@ -123,19 +136,25 @@ void Checkpoints::keep(const CheckpointHead& head,
   }
 }
 
+void Checkpoints::begin(const CheckpointHead& head) {
+  results::OutputArchive archive(dir_ / begun_file);
+  archive(magic, head);
+  archive.close();
+}
+
+std::optional<CheckpointHead> Checkpoints::begun() const {
+  if (!files::is_there(dir_ / begun_file)) return {};
+  const auto kept = open_checkpoint(dir_ / begun_file);
+  kept->body.close();
+  return kept->head;
+}
+
 std::unique_ptr<Checkpoints::Checkpoint> Checkpoints::last(
     const std::function<void(const std::string&)>& note) const {
   const auto files = numbered(dir_);
   for (auto k = files.rbegin(); k != files.rend(); ++k) {
     try {
-      auto kept = std::make_unique<Checkpoint>(k->second);
-      std::string begin;
-      kept->rest(begin);
-      if (begin != magic) throw UserError("{}: is damaged or of another version", k->second.string());
-      kept->rest(kept->head);
-      require_possible(kept->head.sessions > 0 && kept->head.wall_s >= 0 && std::isfinite(kept->head.wall_s),
-                       "a session");
-      return kept;
+      return open_checkpoint(k->second);
     } catch (const UserError& error) {
       const bool is_last = std::next(k) == files.rend();
       note(fmt::format("{}; {}", error.what(), is_last ? "the run begins anew" : "the one before is taken"));

@@ -49,14 +49,19 @@ class Checkpoints {
  public:
   explicit Checkpoints(std::filesystem::path dir) : dir_(std::move(dir)) {}
 
+  /// Keeps what a run was begun with, before its first checkpoint.
+  void begin(const CheckpointHead& head);
+  /// What `begin` has kept; none where the run has not come so far. @throws UserError where it is damaged
+  std::optional<CheckpointHead> begun() const;
+
   /// Writes a checkpoint by `write`, and when that is on the device removes the last but two.
   /// @throws WriteError, the earlier ones being left.
   void keep(const CheckpointHead& head, const std::function<void(results::OutputArchive&)>& write);
 
   struct Checkpoint {
-    explicit Checkpoint(const std::filesystem::path& file) : rest(file) {}
+    explicit Checkpoint(const std::filesystem::path& file) : body(file) {}
     CheckpointHead head;
-    results::InputArchive rest;
+    results::InputArchive body;
   };
   /// The last one that is intact, null where there is none; `note` receives a message for each damaged one.
   std::unique_ptr<Checkpoint> last(const std::function<void(const std::string&)>& note) const;

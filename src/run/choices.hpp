@@ -26,7 +26,7 @@ Unknowns approximate_unknowns(const input::Case& config);
 /// to leave most of a large machine to others, and no more than processors.
 int suitable_threads(const input::Case& config);
 
-/// Of the top edge where the plate is loaded by a ramp, and during the event; or of the pusher between
+/// Speed of the top edge where the plate is loaded by a ramp, and during the event; or of the pusher between
 /// events.
 double top_speed_m_per_s(const input::Case& config);
 /// A pusher stays where it is.

@@ -31,7 +31,7 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
     initial = read_initial_state(archive, config);
     archive.close();
     const auto& event = result.event;
-    if (event.energies.empty() || event.record.x_m != initial.common.tractions.x_m ||
+    if (event.energies.empty() || event.record.x_m != initial.subcritical.tractions.x_m ||
         !record::is_consistent(event.record) || event.end > motion::EventEnd::observer)
       return false;
   } catch (const UserError&) {
@@ -39,7 +39,7 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
   }
   result.config = config;
   result.speeds = wave_speeds(config.material);
-  measure(result, initial);
+  analyse(result, initial);
   return true;
 }
 

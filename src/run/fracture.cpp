@@ -26,7 +26,7 @@ namespace slipfront::run {
 
 namespace {
 
-/// Of a sample, with a dense stiffness of its interface; and of half-spaces, with kernels.
+/// Limits of a sample, with a dense stiffness of its interface; and of half-spaces, with kernels.
 constexpr double most_columns_of_sample = 1500, most_unknowns_of_sample = 1e6,
                  most_columns_of_half_spaces = 2000;
 /// Elements over the height of half-spaces, whose bodies do not matter.
@@ -93,7 +93,7 @@ input::Case in_fewer_elements(input::Case config) {
   return config;
 }
 
-/// Of the sample with its far edges held.
+/// Response of the sample with its far edges held.
 fracture::SlipResponse response_of_sample(const input::Case& config, const InitialState& initial) {
   using statics::Factorisation;
   const auto plate = std::make_shared<const Factorisation>(initial.mesh, config.material,
@@ -203,7 +203,7 @@ double nucleation_length_m(const Laws& laws, const fracture::SlipResponse& respo
 
 /// Nodes of the first crack: at a place, the trigger's, or the node that is nearest to its strength.
 Patch first_crack(const input::Case& config, const InitialState& initial, const std::optional<double>& x_m) {
-  const auto& nodes_x_m = initial.common.tractions.x_m;
+  const auto& nodes_x_m = initial.subcritical.tractions.x_m;
   const auto nearest = [&](double x) {
     const auto away = [&](double node_x) { return std::abs(node_x - x); };
     return static_cast<std::size_t>(std::ranges::min_element(nodes_x_m, {}, away) - nodes_x_m.begin());
@@ -213,7 +213,7 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
                     nodes_x_m.front(), nodes_x_m.back());
   if (x_m) return {nearest(*x_m), nearest(*x_m)};
   if (interface::is_at_edge(config.event)) {
-    const auto zone = motion::trigger_zone(initial.common, config.event, config.trigger.zone_m);
+    const auto zone = motion::trigger_zone(initial.subcritical, config.event, config.trigger.zone_m);
     if (!zone.empty()) return {zone.front(), zone.back()};
   }
   if (config.event == interface::EventKind::nucleation) {
@@ -226,7 +226,7 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
           Key("nucleation.x_m"), n.x_m);
     return {nearest(n.x_m - 0.5 * n.length_m()), nearest(n.x_m + 0.5 * n.length_m())};
   }
-  const double peak_x_m = initial.common.peak_x_m;
+  const double peak_x_m = initial.subcritical.peak_x_m;
   return {nearest(peak_x_m), nearest(peak_x_m)};
 }
 
@@ -319,7 +319,8 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
         "the event on",
         slip_rate_at_tip_m_per_s));
   if (input::is_sequence(given) && !has_state_before)
-    p.notes.emplace_back("of the first event of the sequence");
+    p.notes.emplace_back(input::heals(given) ? "of the first event of the sequence, before its strength heals"
+                                             : "of the first event of the sequence");
   if (given.loading.method == statics::LoadingMethod::ramp)
     p.notes.emplace_back("the state before the event is that of loading.method = direct");
   if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
@@ -338,13 +339,13 @@ FrontPredictor::FrontPredictor(const input::Case& given) : given_(given), config
   response_ = std::make_shared<const fracture::SlipResponse>(
       is_held(config_)
           ? response_of_sample(config_, initial_)
-          : fracture::response_of_half_spaces(bodies_of(config_), initial_.common.tractions.x_m));
+          : fracture::response_of_half_spaces(bodies_of(config_), initial_.subcritical.tractions.x_m));
 }
 
 FracturePrediction FrontPredictor::predict(const TipFriction& friction, const std::optional<double>& x_m,
                                            const record::StaticState* given_before) const {
   const auto bodies = bodies_of(config_);
-  auto before = initial_.common.tractions;
+  auto before = initial_.subcritical.tractions;
   for (std::size_t k = 0; given_before != nullptr && k < before.x_m.size(); ++k) {
     before.t_s_Pa[k] = at(given_before->x_m, given_before->t_s_Pa, before.x_m[k]);
     before.p_s_Pa[k] = at(given_before->x_m, given_before->p_s_Pa, before.x_m[k]);
@@ -388,10 +389,11 @@ FracturePrediction FrontPredictor::predict(const TipFriction& friction, const st
   if (std::ranges::any_of(fronts, &fracture::PredictedFront::arrests))
     p.doubts_of_arrest = doubts_of_arrest(config_, by_law, of_speeds);
   if (!p.doubts_of_arrest.empty())
-    p.notes.push_back(fmt::format("no arrest is foretold: {}", fmt::join(p.doubts_of_arrest, "; ")));
+    p.notes.push_back(fmt::format("no arrest is predicted: {}", fmt::join(p.doubts_of_arrest, "; ")));
   else if (!of_speeds.empty())
     p.notes.push_back(std::move(of_speeds));
-  if (auto doubt = doubt_of_beginning(config_, initial_.common); given_before == nullptr && !doubt.empty())
+  if (auto doubt = doubt_of_beginning(config_, initial_.subcritical);
+      given_before == nullptr && !doubt.empty())
     p.notes.push_back(std::move(doubt));
   return p;
 }

@@ -31,14 +31,14 @@ struct FracturePrediction {
   fracture::Prediction of_fronts;
   std::size_t n_nodes = 0;  ///< on the interface
   bool covers_all = false;  ///< the first crack is the whole interface
-  /// Of a patch where the fronts begin, over which slow slip runs away; not a number where none does, or
-  /// where friction does not weaken over a slip.
+  /// Length of a patch where the fronts begin over which slow slip runs away; not a number where none does,
+  /// or where friction does not weaken over a slip.
   double nucleation_length_m = nan;
   std::string bodies;              ///< whose static response it is, in words
   std::vector<std::string> notes;  ///< what it leaves out, a line each
-  /// Why fronts may run on where they arrest by it; then no arrest is foretold.
+  /// Why fronts may run on where they arrest by it; then no arrest is predicted.
   std::vector<std::string> doubts_of_arrest;
-  bool foretells_arrest(const fracture::PredictedFront& front) const {
+  bool predicts_arrest(const fracture::PredictedFront& front) const {
     return front.arrests() && doubts_of_arrest.empty();
   }
 };
@@ -72,7 +72,7 @@ class FrontPredictor {
   std::shared_ptr<const fracture::SlipResponse> response_;
 };
 
-/// Of one event.
+/// Prediction of one event.
 FracturePrediction predict_fronts(const input::Case& config, const TipFriction& friction = {},
                                   const std::optional<double>& x_m = {});
 

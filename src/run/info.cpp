@@ -59,7 +59,7 @@ std::vector<std::size_t> nodes_that_can_slip(const input::Case& config, const me
   return nodes;
 }
 
-/// Of some nodes those where one of the three numbers by which friction enters the growth of waves is least
+/// Those of some nodes where one of the three numbers by which friction enters the growth of waves is least
 /// or largest; all under laws with a state, of which more numbers count, and whose growth is a closed form.
 std::set<std::size_t> extreme_nodes(const std::vector<std::size_t>& among,
                                     const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
@@ -78,8 +78,8 @@ std::set<std::size_t> extreme_nodes(const std::vector<std::size_t>& among,
   return nodes;
 }
 
-/// Of two verdicts the one with faster growth; where neither has a bound or grows, by how far weakening is
-/// beyond it. None is worse by rounding alone, and no verdict comes last.
+/// The verdict with faster growth is the worse one; where neither has a bound or grows, by how far weakening
+/// is beyond it. None is worse by rounding alone, and no verdict comes last.
 bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness& b) {
   constexpr double rounding = 1e-9;
   const double of_a = a.fastest_growth_per_s, of_b = b.fastest_growth_per_s;
@@ -211,7 +211,7 @@ double measured_rate_per_s(const input::Case& config, const Timed& timed, motion
   return times * static_cast<double>(n_steps) * stepper.node_updates_per_step() / spent_s;
 }
 
-/// Of the meshes and the state that the event begins from, and of the files, mostly sums and writing of
+/// Time of the meshes, of the state that the event begins from and of the files, mostly sums and writing of
 /// fields.
 double expected_rest_s(const Info& info) {
   constexpr double s_per_node = 0.25e-6, s_per_byte = 2.4e-9;
@@ -232,7 +232,7 @@ Timed whole_to_time(const input::Case& config, const Meshes& meshes) {
   return timed;
 }
 
-/// Of three evaluations a step, each with two dense products and friction at all nodes.
+/// Time of three evaluations a step, each with two dense products and friction at all nodes.
 double expected_slow_s(const Info& info) {
   constexpr double s_per_pair = 3 * 2 * 0.4e-9, s_per_node = 3 * 100e-9;
   const auto n = static_cast<double>(info.n_interface);
@@ -261,11 +261,11 @@ Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_pr
   return timed;
 }
 
-/// Of the steps of own and ghost columns, at the measured rate, of what passes through rank 0: samples,
+/// Time of the steps of own and ghost columns, at the measured rate, of what passes through rank 0: samples,
 /// snapshots and initial motion, and of its statics.
 Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Timed& timed, int n_processes,
                        const Info& info) {
-  /// Of a node: u and v, as they are sent. Packed, passed on and joined by rank 0, of each byte.
+  /// Bytes of a node: u and v, as they are sent. Packed, passed on and joined by rank 0, of each byte.
   constexpr double sent_bytes_per_node = 32, s_per_byte = 1 / 0.8e9;
   const GlobalBodies whole(config, meshes.plate, meshes.base);
   std::vector<motion::BodySteps> body_steps;
@@ -313,7 +313,7 @@ Info info(const input::Case& config, const std::optional<int>& n_processes) {
   }
   if (loaded) {
     info.loads = loaded->loads;
-    info.rupture = rupture_outlook(config, loaded->common, mesh::tributary_lengths_m(meshes.plate));
+    info.rupture = rupture_outlook(config, loaded->subcritical, mesh::tributary_lengths_m(meshes.plate));
   } else {
     info.rupture = rupture_outlook(config, meshes);
   }

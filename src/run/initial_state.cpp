@@ -47,8 +47,8 @@ std::string strengths_text(const input::Case& config) {
 }  // namespace
 
 void InitialState::release_displacements(const statics::Equilibrium* but) {
-  std::vector<statics::Equilibrium*> states = {&common, &spontaneous};
-  if (ramp) states.insert(states.end(), {&ramp->common, &ramp->spontaneous});
+  std::vector<statics::Equilibrium*> states = {&subcritical, &supercritical};
+  if (ramp) states.insert(states.end(), {&ramp->subcritical, &ramp->supercritical});
   for (auto* state : states)
     for (auto* field : state->displacements())
       if (state != but) *field = {};
@@ -114,7 +114,7 @@ void require_free_sides_for_single(const input::Case& config) {
   if (input::has_base_body(config)) require(config.base.plate, "base.sides");
 }
 
-/// Of the body below, upside down.
+/// Mesh of the body below, upside down.
 mesh::Mesh make_base(const input::Case& config, bool only_interface) {
   const auto plate = input::base_plate(config);
   const double rows = plate.height_m / plate.element_size_m;
@@ -171,7 +171,7 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
 
 namespace {
 
-/// Of all nodes, or the one law that they have.
+/// Laws of all nodes, or the one law that they have.
 std::vector<interface::FrictionLaw> laws_of(const input::Case& config, const mesh::Mesh& plate) {
   auto laws = input::friction_at(config, interface_x_m(plate));
   if (laws.empty()) laws.push_back(config.friction);
@@ -200,18 +200,38 @@ void require_rate_of_events(const input::Case& config) {
   const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
   const double most_m_per_s =
       std::min(input::radiation_slip_rate_m_per_s(config), input::tip_slip_rate_m_per_s(config));
+  const double load_m_per_s = std::max(LoadingPath(config).fastest_m_per_s(), top_speed_m_per_s(config));
+  const Key first("friction.V_i_m_per_s");
+  if (const double first_m_per_s = config.friction.parameter("V_i_m_per_s"); first_m_per_s > most_m_per_s)
+    throw UserError(
+        "{} is {:.4g} m/s, beyond the rate at which inertia limits slip, {:.4g} m/s: no slow slip comes "
+        "before "
+        "an event; choose a smaller one, or press harder",
+        first, first_m_per_s, most_m_per_s);
+  if (load_m_per_s >= most_m_per_s)
+    throw UserError(
+        "the load moves at {:.4g} m/s, not below the rate at which inertia limits slip, {:.4g} m/s; choose a "
+        "slower one ({}, {}), or press harder",
+        load_m_per_s, most_m_per_s, speed, Key("sequence.times_s"));
   if (rate_m_per_s > most_m_per_s)
     throw UserError(
         "{} is {:.4g} m/s, beyond the rate of a front's tip or of radiation, {:.4g} m/s: fronts would be "
         "slow "
         "slip, and no event; choose a smaller one",
         key, rate_m_per_s, most_m_per_s);
-  const double load_m_per_s = std::max(LoadingPath(config).fastest_m_per_s(), top_speed_m_per_s(config));
   if (rate_m_per_s <= load_m_per_s)
     throw UserError(
         "{} is {:.4g} m/s, not above the speed of the load, {:.4g} m/s: steady sliding would be an event; "
         "choose a larger one, or a slower load ({}, {})",
         key, rate_m_per_s, load_m_per_s, speed, Key("sequence.times_s"));
+}
+
+void require_load_below_c_L(const input::Case& config) {
+  const double speed_m_per_s = LoadingPath(config).fastest_m_per_s();
+  const double c_L = solid::longitudinal_speed_m_per_s(config.material);
+  if (speed_m_per_s >= c_L)
+    throw UserError("{} and {} move the load at {:.4g} m/s; it must be slower than c_L = {:.4g} m/s",
+                    Key("sequence.times_s"), Key("sequence.shears_m"), speed_m_per_s, c_L);
 }
 
 /// Slip that strengthens with the slip rate everywhere stays slow, and no event ends it: at rates from rest
@@ -248,6 +268,7 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
+  if (input::is_sequence(config)) require_load_below_c_L(config);
   if (input::is_slow(config)) {
     require_steady_friction(config, meshes.plate);
     require_rate_of_events(config);
@@ -341,9 +362,9 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto mu_s = ratios_at_rest(config, initial.mu_s);
   if (is_prestressed(config)) {
     initial.prescribed = true;
-    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config, initial.mesh),
-                                          initial.base ? &*initial.base : nullptr);
-    initial.spontaneous = initial.common;
+    initial.subcritical = statics::prestressed(initial.mesh, prescribed_tractions(config, initial.mesh),
+                                               initial.base ? &*initial.base : nullptr);
+    initial.supercritical = initial.subcritical;
     initial.critical_shear_m = nan;
     initial.wall_s = seconds_since(start);
     return initial;
@@ -353,10 +374,10 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto critical = statics.shear_to(1);
   initial.critical_shear_m = critical.shear_m;
   if (config.loading.method == statics::LoadingMethod::direct) {
-    initial.common = common_state(config, statics, critical, initial.tributary_m);
-    initial.spontaneous = statics::is_sheared_by_force(config.loading)
-                              ? initial.common
-                              : statics.shear_to(1 + config.loading.critical_margin);
+    initial.subcritical = common_state(config, statics, critical, initial.tributary_m);
+    initial.supercritical = statics::is_sheared_by_force(config.loading)
+                                ? initial.subcritical
+                                : statics.shear_to(1 + config.loading.critical_margin);
   } else {
     auto of_ramp = config;
     of_ramp.time.interface_substeps = 1;
@@ -371,11 +392,11 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     if (ramp_begins) ramp_begins(stepper, ramp);
     initial.ramp = ramp.run();
     if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
-    initial.common = initial.ramp->common;
-    initial.spontaneous = initial.ramp->spontaneous;
+    initial.subcritical = initial.ramp->subcritical;
+    initial.supercritical = initial.ramp->supercritical;
   }
   if (has_forces(config))
-    initial.loads = found_loads(config, statics, critical, initial.common, initial.tributary_m);
+    initial.loads = resolved_loads(config, statics, critical, initial.subcritical, initial.tributary_m);
   initial.wall_s = seconds_since(start);
   return initial;
 }
@@ -386,9 +407,9 @@ std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes&
       statics_of(config, meshes.plate, meshes.base, ratios_at_rest(config, meshes.mu_s), [] { return true; });
   const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
   const auto critical = statics.shear_to(1);
-  auto common = common_state(config, statics, critical, tributary_m);
-  const auto loads = found_loads(config, statics, critical, common, tributary_m);
-  return LoadedState{loads, std::move(common)};
+  auto subcritical = common_state(config, statics, critical, tributary_m);
+  const auto loads = resolved_loads(config, statics, critical, subcritical, tributary_m);
+  return LoadedState{loads, std::move(subcritical)};
 }
 
 }  // namespace slipfront::run

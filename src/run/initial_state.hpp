@@ -18,35 +18,36 @@
 namespace slipfront::run {
 
 /// The loaded plate before any event: the same for all events of one plate, material, loading and mu_s, so
-/// that it is computed once and shared. Where the tractions are prescribed, common and spontaneous are that
-/// state.
+/// that it is computed once and shared. Where the tractions are prescribed, subcritical and supercritical are
+/// that state.
 struct InitialState {
   mesh::Mesh mesh;                        ///< of the plate
   std::optional<mesh::Mesh> base;         ///< of the body below, upside down; none on the rigid plane
   std::int64_t n_nodes = 0, n_cells = 0;  ///< of both
   std::vector<double> tributary_m;        ///< [interface nodes]
-  statics::Equilibrium common;  ///< at t/p = (1 - critical_margin) mu_s inside, or under a given shear force
-  statics::Equilibrium spontaneous;  ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s;
-                                     ///< under a given shear force the common one
-  bool prescribed = false;           ///< loading.method is prestress: no statics, no critical shear
-  std::vector<double> mu_s;          ///< [interface nodes] where friction varies along x, else none
-  /// Of friction with a state, as in motion::Loads.
+  statics::Equilibrium
+      subcritical;  ///< at t/p = (1 - critical_margin) mu_s inside, or under a given shear force
+  statics::Equilibrium supercritical;  ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s;
+                                       ///< under a given shear force the subcritical one
+  bool prescribed = false;             ///< loading.method is prestress: no statics, no critical shear
+  std::vector<double> mu_s;            ///< [interface nodes] where friction varies along x, else none
+  /// States of friction, as in motion::Loads.
   std::vector<std::vector<double>> law_states;
   double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly, or behind slow slip
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it
   double wall_s = 0;
-  std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
-  std::optional<FoundLoads> loads;   ///< where the case gives forces
+  std::optional<motion::Ramp> ramp;    ///< where loading.method is ramp
+  std::optional<ResolvedLoads> loads;  ///< where the case gives forces
 
-  /// Of all states but one.
+  /// Releases the displacements of all states but one.
   void release_displacements(const statics::Equilibrium* but = nullptr);
 
   /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, law_states,
+    archive(n_nodes, n_cells, tributary_m, subcritical, supercritical, prescribed, mu_s, law_states,
             critical_shear_m, n_unknowns, solver, solver_bytes, wall_s, ramp, loads);
   }
 };
@@ -64,10 +65,10 @@ struct Meshes {
 /// @throws UserError
 Meshes check(const input::Case& config, const Processes& processes = one_process());
 
-/// The same of the interfaces alone, whatever the memory.
+/// Checks the interfaces alone, whatever the memory.
 Meshes check_interfaces(const input::Case& config);
 
-/// Of a body, of which the interface may be all that is held.
+/// Numbers of a body of which the interface may be all that is held.
 std::int64_t n_nodes_of(const mesh::Mesh& mesh);
 std::int64_t n_cells_of(const mesh::Mesh& mesh);
 
@@ -90,8 +91,8 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
                                 const Processes& processes = one_process());
 
 struct LoadedState {
-  FoundLoads loads;
-  statics::Equilibrium common;  ///< see InitialState
+  ResolvedLoads loads;
+  statics::Equilibrium subcritical;  ///< see InitialState
 };
 /// What the forces of a case come to, by its statics; under loading.method = ramp as if it was direct. None
 /// where it gives none.
@@ -109,7 +110,7 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution = {});
-/// The same, fast or by the plain scheme, as the case says.
+/// A new stepper, fast or by the plain scheme, as the case says.
 std::unique_ptr<motion::TimeStepper> new_time_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                       const std::optional<mesh::Mesh>& base,
                                                       const motion::Execution& execution = {});

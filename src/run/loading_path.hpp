@@ -8,7 +8,7 @@
 namespace slipfront::run {
 
 /// Where along x the loading of a sequence has brought the top edge, the pusher or the machine, over the time
-/// since the tilt: sequence.times_s and shears_m, linear between, or at a constant speed.
+/// since normal loading: sequence.times_s and shears_m, linear between, or at a constant speed.
 class LoadingPath {
  public:
   explicit LoadingPath(const input::Case& config);

@@ -28,16 +28,16 @@ statics::Equilibrium common_state(const input::Case& config, const statics::Stat
   return statics.shear_to_force(wanted_N_per_m);
 }
 
-FoundLoads found_loads(const input::Case& config, const statics::Statics& statics,
-                       const statics::Equilibrium& critical, const statics::Equilibrium& common,
-                       std::span<const double> tributary_m) {
+ResolvedLoads resolved_loads(const input::Case& config, const statics::Statics& statics,
+                             const statics::Equilibrium& critical, const statics::Equilibrium& subcritical,
+                             std::span<const double> tributary_m) {
   const double normal_N_per_m = statics::contact_force(statics.tilted(), tributary_m).normal_N_per_m;
   return {normal_N_per_m,
           normal_N_per_m / config.plate.width_m,
           statics.loading().tilt_left_m,
           statics.loading().tilt_right_m,
-          statics::contact_force(common, tributary_m).shear_N_per_m,
-          common.shear_m,
+          statics::contact_force(subcritical, tributary_m).shear_N_per_m,
+          subcritical.shear_m,
           statics::contact_force(critical, tributary_m).shear_N_per_m,
           critical.shear_m};
 }

@@ -11,12 +11,12 @@
 namespace slipfront::run {
 
 /// What the forces of a case come to, and the displacements of the loaded edge that give them.
-struct FoundLoads {
+struct ResolvedLoads {
   double normal_force_N_per_m = 0;           ///< before any shear
   double mean_pressure_Pa = 0;               ///< the same over plate.width_m
   double tilt_left_m = 0, tilt_right_m = 0;  ///< down
-  double shear_force_N_per_m = 0;            ///< of the common state
-  double shear_m = 0;                        ///< of the loaded edge to +x, in the common state
+  double shear_force_N_per_m = 0;            ///< of the subcritical state
+  double shear_m = 0;                        ///< of the loaded edge to +x, in the subcritical state
   double critical_shear_force_N_per_m = 0;   ///< at which t/p first reaches mu_s inside
   double critical_shear_m = 0;               ///< the same of the loaded edge
 
@@ -37,10 +37,10 @@ bool has_forces(const input::Case& config);
 statics::Equilibrium common_state(const input::Case& config, const statics::Statics& statics,
                                   const statics::Equilibrium& critical, std::span<const double> tributary_m);
 
-/// @param common       state before triggered events
+/// @param subcritical       state before triggered events
 /// @param tributary_m  [interface nodes]
-FoundLoads found_loads(const input::Case& config, const statics::Statics& statics,
-                       const statics::Equilibrium& critical, const statics::Equilibrium& common,
-                       std::span<const double> tributary_m);
+ResolvedLoads resolved_loads(const input::Case& config, const statics::Statics& statics,
+                             const statics::Equilibrium& critical, const statics::Equilibrium& subcritical,
+                             std::span<const double> tributary_m);
 
 }  // namespace slipfront::run

@@ -33,7 +33,7 @@ bool is_whole(double count) {
   return std::abs(count - std::round(count)) <= 1e-6 * count && count > 0.5;
 }
 
-/// Of the plate and a base; none where the elements do not fit them.
+/// Nodes of the plate and a base; none where the elements do not fit them.
 std::optional<std::int64_t> n_nodes(const input::Case& config) {
   try {
     auto n = n_nodes_of(mesh::make_interface(config.plate));

@@ -35,25 +35,28 @@ constexpr double number = sizeof(double);
 
 /// The program and its libraries.
 constexpr double program_bytes = 18e6;
-/// Of a node of bodies whose motion is made: mesh, state before the event, mass and motion. In small meshes
-/// four fields more, with which the largest frequency is found.
+/// Bytes of a node of bodies whose motion is made: mesh, state before the event, mass and motion. In small
+/// meshes four fields more, with which the largest frequency is found.
 constexpr double in_motion = 135, in_motion_of_few = 180;
-/// The same by the plain scheme, and in its checkpoints: stiffnesses of cells, fields of two levels.
+/// Bytes of a node by the plain scheme, and in its checkpoints: stiffnesses of cells, fields of two levels.
 constexpr double in_plain_motion = 1000, in_plain_checkpoint = 210;
 constexpr double state_before = 32;  ///< of these u before and its change with the shear
 constexpr double in_ramp = 128;      ///< of a node under a ramp, besides: four states
-/// Of an unknown: what each solver takes, the equilibria included.
+/// Bytes of an unknown: what each solver takes, the equilibria included.
 constexpr double by_multigrid = 112;
-/// Of an unknown: its place in the factor by nested dissection, times log2 of their number, and indices.
+/// Bytes of an unknown: its place in the factor by nested dissection, times log2 of their number, and
+/// indices.
 constexpr double of_factor = 54, of_indices = 45;
-/// Of a pair of displacements of the interface: the dense end of the factor, fronts, equations of contact.
+/// Bytes of a pair of displacements of the interface: the dense end of the factor, fronts, equations of
+/// contact.
 constexpr double of_dense_pair = 56;
-/// Of an interface node: its state; of what is recorded of it five changes of contact, each with its time and
-/// place, and two tractions at all nodes around it as far as l*; and slip behind the tip as it passes.
+/// Bytes of an interface node: its state; of what is recorded of it five changes of contact, each with its
+/// time and place, and two tractions at all nodes around it as far as l*; and slip behind the tip as it
+/// passes.
 constexpr double of_interface = 620, changes = 5, of_change = 32, of_node_around = 16, of_tip_slip = 620;
 /// What rank 0 of several has beside its part, of each node of the bodies: the mesh.
 constexpr double mesh_of_root = 32;
-/// Of a cell of a relief, for a rank 0 that has no more of the bodies than these and the interface.
+/// Bytes of a cell of a relief, for a rank 0 that has no more of the bodies than these and the interface.
 constexpr double in_relief = 1600;
 
 // Bytes on disk of a node.
@@ -204,7 +207,7 @@ double slow_steps_of(const input::Case& config) {
   const double slip_m = std::isfinite(path.end_s())
                             ? path.shear_m(path.end_s())
                             : interface::static_coefficient(config.friction) * p_Pa * compliance_m_per_Pa;
-  // Of waves of two elements.
+  // Stiffness against waves of two elements.
   const double stiffness_Pa_per_m =
       0.5 * std::numbers::pi * stability::modulus_Pa(bodies_of(config)) / config.plate.element_size_m;
   return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * config.friction.parameter("a") * p_Pa);

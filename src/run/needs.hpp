@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run takes of memory, disk and time, foretold to some 30 %.
+// What a run takes of memory, disk and time, predicted to some 30 %.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Size {
   double step_s = 0;
 };
 
-/// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
+/// Size from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
 /// which is shorter, and of a graded plate, which may be longer.
 Size estimated_size(const input::Case& config);
 
@@ -50,11 +50,11 @@ struct Needs {
 /// @throws UserError where more steps are asked for than any machine takes.
 Needs needs(const input::Case& config, const Size& size, const Holder& holder = {});
 
-/// Of the statics of a plate without a base by one process.
+/// Needs of the statics of a plate without a base by one process.
 double statics_bytes(statics::StaticSolver solver, double n_unknowns, double n_interface);
 double statics_s(statics::StaticSolver solver, double n_unknowns);
 
-/// Of the motion of so many nodes, while it is made.
+/// Needs of the motion of so many nodes, while it is made.
 double motion_bytes(double n_nodes);
 
 /// Refuses a case that would not fit into the memory, or has more nodes than can be numbered, before anything

@@ -61,6 +61,12 @@ void add_odd_units(const NamedMaterial& body, double width_m, Notes& notes) {
     add_note(table + ".poissons_ratio", m.poissons_ratio,
              "near -1 the body hardly resists a change of volume beside one of shape, and rounding grows",
              notes);
+  if (m.poissons_ratio > 0.49 && m.plane == solid::Plane::strain)
+    add_note(
+        table + ".poissons_ratio", m.poissons_ratio,
+        "near 0.5 in plane strain elements of four nodes are too stiff (volumetric locking), the more the "
+        "coarser",
+        notes);
   const double damping_length_m = m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
   if (damping_length_m > 0.1 * width_m)
     notes.push_back(
@@ -85,15 +91,16 @@ void add_odd_units_of_friction(const input::Case& config, Notes& notes) {
 void add_odd_pressures(const input::Case& config, Notes& notes) {
   constexpr double max_strain = 0.03;  // of linear elasticity
   constexpr double min_strain = 1e-7;  // a rock pressed by its own weight over some centimetres
-  const double E_Pa = config.material.youngs_modulus_Pa;
+  double E_Pa = config.material.youngs_modulus_Pa;
+  if (has_base_body(config)) E_Pa = std::min(E_Pa, input::base_material(config).youngs_modulus_Pa);
   if (!is_prestressed(config)) {
     const double strain = input::nominal_pressure_Pa(config) / E_Pa;
     if (strain > max_strain)
       notes.push_back(fmt::format(
-          "the {} the plate by {:.3g} of Young's modulus, beyond small strains: {}?",
+          "the {} the plate by {:.3g} of Young's modulus{}, beyond small strains: {}?",
           config.loading.mean_pressure_Pa || config.loading.normal_force_N_per_m ? "normal force presses"
                                                                                  : "tilt presses",
-          strain,
+          strain, E_Pa < config.material.youngs_modulus_Pa ? " of the base" : "",
           config.loading.mean_pressure_Pa       ? "is loading.mean_pressure_Pa in Pa"
           : config.loading.normal_force_N_per_m ? "is loading.normal_force_N_per_m in N per m of thickness"
                                                 : "are loading.tilt_left_m and loading.tilt_right_m in m"));

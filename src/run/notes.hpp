@@ -16,8 +16,7 @@ namespace slipfront::run {
 std::vector<std::string> notes_of_case(const input::Case& config, const RuptureOutlook& rupture,
                                        double step_s);
 
-/// Of a sequence under a law with a state, whose run needs none: why there is no static state to predict
-/// from.
+/// Why a sequence under a law with a state, whose run needs none, has no static state to predict from.
 std::string no_static_state(const UserError& error);
 
 }  // namespace slipfront::run

@@ -275,7 +275,7 @@ std::string weakening_along_x(const input::Case& config, const std::vector<doubl
   return fmt::format("velocity weakening (b > a) {}, strengthening elsewhere", where);
 }
 
-/// The same at the slip rate before the event and at 1 m/s, which differ under strong weakening.
+/// Weakening along x at the slip rate before the event and at 1 m/s, which differ under strong weakening.
 std::string steady_sliding(const input::Case& config, const std::vector<double>& x_m) {
   if (!config.friction.has_state()) return {};
   const auto slow = weakening_along_x(config, x_m, 0), fast = weakening_along_x(config, x_m, 1);
@@ -303,7 +303,7 @@ RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const
   return o;
 }
 
-/// Of tractions that are known.
+/// Adds doubts by tractions that are known.
 void add_doubts(const input::Case& config, const Inside& inside, RuptureOutlook& o) {
   for (auto doubt : {doubt_of_beginning(config, inside), doubt_of_forced_patch(config)})
     if (!doubt.empty()) o.doubts.push_back(std::move(doubt));

@@ -15,15 +15,15 @@ namespace slipfront::run {
 
 /// What is to be expected of a case's rupture, from the tractions before it.
 struct RuptureOutlook {
-  /// Of the nodes inside; before statics are solved, of one node at the critical state under the nominal
-  /// pressure.
+  /// Outlook of the nodes inside; before statics are solved, of one node at the critical state under the
+  /// nominal pressure.
   stability::Outlook of_nodes;
   bool nominal = false;                    ///< tractions are not known yet
   std::optional<double> trigger_length_m;  ///< of the zone at an edge, or of the patch
   std::optional<double> process_zone_elements;
   /// Beyond it a node counts as slipping, under a law that never sticks.
   std::optional<double> tip_slip_rate_m_per_s;
-  /// Of such a law, in words: where friction weakens with the slip rate. Else empty.
+  /// Where friction of such a law weakens with the slip rate, in words. Else empty.
   std::string steady_sliding;
   /// Its fronts as cracks, where that is known quickly.
   std::optional<FracturePrediction> cracks;
@@ -48,11 +48,11 @@ std::string doubt_of_beginning(const input::Case& config, const statics::Equilib
 /// That a forced patch has not its length before the end; empty where it has, or there is none.
 std::string doubt_of_forced_patch(const input::Case& config);
 
-/// Of a case whose state before the event is known.
+/// Outlook of a case whose state before the event is known.
 /// @param tributary_m  [interface nodes]
 RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
                                std::span<const double> tributary_m);
-/// Of a case alone, whose tractions are known where they are prescribed.
+/// Outlook of a case alone, whose tractions are known where they are prescribed.
 RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes);
 
 }  // namespace slipfront::run

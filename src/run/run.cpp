@@ -26,7 +26,7 @@ namespace {
 /// With which the event begins. @tparam Initial  InitialState
 template <class Initial>
 auto& event_state(const input::Case& config, Initial& initial) {
-  return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
+  return config.event == interface::EventKind::spontaneous ? initial.supercritical : initial.subcritical;
 }
 
 /// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
@@ -61,7 +61,7 @@ WaveSpeeds wave_speeds(const solid::Material& m) {
 
 namespace {
 
-/// Of the laws of the nodes, or where these have none of the one of all.
+/// A number of the law of each node, or of the one of all.
 template <class Of>
 PerNode at_nodes(Of of, const interface::FrictionLaw& of_all,
                  const std::vector<interface::FrictionLaw>& laws) {
@@ -81,15 +81,15 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
   o.min_length_m = config.fronts.min_length_m;
   o.crack_share = config.fronts.crack_share;
   o.pulse_share = config.fronts.pulse_share;
-  const auto laws = input::friction_at(config, initial.common.tractions.x_m);
+  const auto laws = input::friction_at(config, initial.subcritical.tractions.x_m);
   o.mu_s = at_nodes(interface::static_coefficient, config.friction, laws);
   o.cohesion_Pa = at_nodes(&interface::FrictionLaw::cohesion_Pa, config.friction, laws);
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
   const double edge = initial.prescribed ? 0 : config.loading.edge_margin_m;
-  const double contact_from = initial.common.inside_from_m - edge;
-  const double contact_to = initial.common.inside_to_m + edge;
+  const double contact_from = initial.subcritical.inside_from_m - edge;
+  const double contact_to = initial.subcritical.inside_to_m + edge;
   if (config.event == interface::EventKind::left) {
     o.exclude_left_m = contact_from + margin;
     o.driven = {{contact_from, contact_from + config.trigger.zone_m}};
@@ -116,7 +116,7 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 
 namespace {
 
-/// Of one process.
+/// The stepper of one process.
 std::unique_ptr<motion::TimeStepper> whole_stepper(const input::Case& config, const InitialState& initial,
                                                    const motion::Execution& execution) {
   auto stepper = new_time_stepper(config, initial.mesh, initial.base, execution);
@@ -177,8 +177,8 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
                              motion::EventOutput* output, motion::Observers more) {
   const auto& state = event_state(config, initial);
-  std::optional<motion::Stretch> sticks_within;
-  if (input::is_sequence(config)) sticks_within = {state.inside_from_m, state.inside_to_m};
+  std::optional<motion::Interval> stop_window;
+  if (input::is_sequence(config)) stop_window = {state.inside_from_m, state.inside_to_m};
   const motion::EventSetup setup = {
       .state = state,
       .mu_s = ratios_at_rest(config, initial.mu_s),
@@ -189,7 +189,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
                    snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s,
                    prescribed_stress(config)},
       .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m),
-      .sticks_within = sticks_within,
+      .stop_window = stop_window,
       .slow_m_per_s = input::is_slow(config) ? input::slow_slip_rate_m_per_s(config) : infinity};
   return {stepper, setup, monitor, output, std::move(more)};
 }
@@ -206,13 +206,13 @@ Result run_from(const input::Case& config, const InitialState& initial, motion::
                 const motion::Monitor& monitor, motion::EventOutput* output, motion::Observers more) {
   const auto start = Clock::now();
   auto event = begin_event(config, initial, stepper, monitor, output, std::move(more));
-  auto result = unmeasured(config, stepper, event.run());
+  auto result = collect(config, stepper, event.run());
   result.stepping_wall_s = seconds_since(start);
-  measure(result, initial);
+  analyse(result, initial);
   return result;
 }
 
-Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event) {
+Result collect(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event) {
   Result result;
   result.config = config;
   result.speeds = wave_speeds(config.material);
@@ -250,20 +250,21 @@ std::string end_of_event(const Result& result) {
       result.event.time_s, config.time.quiet_s, result.event.quiet_slip_rate_m_per_s);
 }
 
-void measure(Result& result, const InitialState& initial) {
-  measure(result, initial, rupture_outlook(result.config, initial.common, initial.tributary_m));
+void analyse(Result& result, const InitialState& initial) {
+  analyse(result, initial, rupture_outlook(result.config, initial.subcritical, initial.tributary_m));
 }
 
-void measure(Result& result, const InitialState& initial, const RuptureOutlook& outlook) {
+void analyse(Result& result, const InitialState& initial, const RuptureOutlook& outlook) {
   const auto& config = result.config;
   const auto options = front_options(config, initial);
-  result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
+  result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
   result.rupture = outlook;
   auto rupture = outlook;
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
   result.warnings = notes_of_case(config, rupture, result.step_s);
-  if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
+  if (auto warning = contact_warning(initial.subcritical); !warning.empty())
+    result.warnings.push_back(warning);
   if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();

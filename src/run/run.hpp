@@ -55,7 +55,7 @@ struct Result {
   std::vector<std::string> warnings;
   std::optional<SharedCost> shared;  ///< of several ranks
 
-  /// What cannot be made again from the case and the initial state, see measure.
+  /// What cannot be made again from the case and the initial state, see analyse.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(stable_step_s, step_s, substep_s, node_updates_per_step, stepping_wall_s, event);
@@ -72,7 +72,7 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
                                                  const motion::Execution& execution = {},
                                                  Processes& processes = one_process());
 
-/// The same plate without its motion, which is to be read from where it was kept.
+/// Stepper of the same plate without its motion, which is to be read from where it was kept.
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
                                                   const motion::Execution& execution = {},
                                                   Processes& processes = one_process());
@@ -83,11 +83,11 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
                              motion::EventOutput* output = nullptr, motion::Observers more = {});
 
 /// The case, the steps and an event, without fronts yet. Collective.
-Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
+Result collect(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
 /// @param outlook  of its initial state
-void measure(Result& result, const InitialState& initial, const RuptureOutlook& outlook);
-void measure(Result& result, const InitialState& initial);
+void analyse(Result& result, const InitialState& initial, const RuptureOutlook& outlook);
+void analyse(Result& result, const InitialState& initial);
 
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early; event.end says which.
@@ -115,14 +115,14 @@ struct Status {
 };
 /// The sessions that a run.json or sequence.json tells of; 0 where there is none, or a damaged one.
 int sessions_of(const std::filesystem::path& file);
-/// Of a run that has ended.
+/// Status of a run that has ended.
 Status status_of(const Result& result);
 /// What it may write so.
 results::Numbers numbers_of(const Status& status);
 
 inline constexpr const char* run_file = "run.json";
 inline constexpr const char* case_file = "case.resolved.toml";
-/// Of a sequence what run.json is of a run.
+/// What run.json is of a run, of a sequence.
 inline constexpr const char* sequence_file = "sequence.json";
 /// The tables of prescribed tractions and of friction as they were read, where there are any.
 inline constexpr const char* prestress_file = "prestress.csv";
@@ -193,11 +193,11 @@ struct Info {
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = nan;
   std::optional<Shared> shared;
-  std::optional<FoundLoads> loads;  ///< see loaded_state
-  std::vector<std::string> notes;   ///< see notes_of_case
+  std::optional<ResolvedLoads> loads;  ///< see loaded_state
+  std::vector<std::string> notes;      ///< see notes_of_case
 };
 
-/// Of a case that root_has_interface_only only columns of one rank are made.
+/// What a run takes. Of a case that root_has_interface_only only columns of one rank are made.
 /// @param n_processes  ranks that are to share the run, each with a processor
 /// @throws UserError where the plate cannot be divided among so many
 Info info(const input::Case& config, const std::optional<int>& n_processes = {});

@@ -51,13 +51,13 @@ void add_works(const InitialState& initial, const statics::Equilibrium& from, co
     sum.friction_work -= t * (u_to.x_m[k] - u_from.x_m[k]);
     sum.contact_work += p * (u_to.y_m[k] - u_from.y_m[k]);
   }
-  sum.top_work += force_N_per_m * (to.shear_m - from.shear_m);
+  sum.far_edge_work += force_N_per_m * (to.shear_m - from.shear_m);
 }
 
 /// Finds where a quantity turns: where it has come back from an extreme by some amount.
 class TurnFinder {
  public:
-  /// Of a quantity that rises at first.
+  /// Follows a quantity that rises at first.
   TurnFinder(double start, double amount) : extreme_(start), amount_(amount) {}
 
   /// @return whether it has turned since the last value
@@ -80,7 +80,7 @@ class SteadySlip {
   explicit SteadySlip(const interface::QuasiDynamicFriction& friction) : friction_(friction) {}
 
   /// @return whether it is steady
-  bool see(const motion::SlowSlip& state) {
+  bool see(const motion::QuasiDynamicState& state) {
     constexpr double many = 10, least_change = 1e-3;  // of d_c, and of a
     bool has_slipped = !u_x_m_.empty();
     for (std::size_t k = 0; k < psi_.size(); ++k) {
@@ -119,7 +119,7 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
   if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
   describe_solver(config, statics_, initial_);
   at_rest_ = statics_.tilted();
-  if (input::heals(config)) held_.rests_since_s.assign(initial_.tributary_m.size(), 0);
+  if (input::heals(config)) rest_.rests_since_s.assign(initial_.tributary_m.size(), 0);
   if (config.friction.has_state())
     begin_slow_slip();
   else if (has_fracture_energy(config))
@@ -175,7 +175,7 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
                               const std::vector<double>& p_Pa) const {
   const auto& plate = config_.plate;
   const auto& x_m = at_rest_.tractions.x_m;
-  const auto at = fmt::format("{:.6g} s after the tilt, at a shear of {:.6g} m", time_s, shear_m);
+  const auto at = fmt::format("{:.6g} s after normal loading, at a shear of {:.6g} m", time_s, shear_m);
   double force = 0, shear_force = 0, moment = 0, from_m = nan, to_m = nan;
   for (std::size_t k = 0; k < x_m.size(); ++k) {
     const double p = p_Pa[k] * initial_.tributary_m[k];
@@ -196,7 +196,7 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
         at, acts_m, Key("plate.height_m"), Key("plate.width_m"));
   const double most_m = std::max(plate.width_m, plate.height_m);
   const double edge_m =
-      shear_m - held_.shear_m - held_.moved_m - shear_force / plate.machine.shear_stiffness_Pa;
+      shear_m - rest_.shear_m - rest_.moved_m - shear_force / plate.machine.shear_stiffness_Pa;
   if (std::isinf(path_.end_s()) && !(edge_m <= most_m))
     throw UserError(
         "{} no event has begun, and the loaded edge has moved by more than the plate's size, {:g} m: "
@@ -205,9 +205,10 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
 }
 
 void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
-  const double time = phase == LoadingPhase::loaded ? path_.end_s() : time_s(state.shear_m);
-  require_stands(time, state.shear_m + held_.moved_m, state.tractions.t_s_Pa, state.tractions.p_s_Pa);
-  auto loaded = row(phase, time, state.shear_m + held_.moved_m, state.tractions);
+  const double time =
+      phase == LoadingPhase::loaded ? std::max(path_.end_s(), rest_.time_s) : time_s(state.shear_m);
+  require_stands(time, state.shear_m + rest_.moved_m, state.tractions.t_s_Pa, state.tractions.p_s_Pa);
+  auto loaded = row(phase, time, state.shear_m + rest_.moved_m, state.tractions);
   add_works(initial_, at_rest_, state, loaded.energies);
   add_state(state, loaded);
   loading_.push_back(loaded);
@@ -217,7 +218,7 @@ void Sequence::begin_slow_slip() {
   const auto model = input::contact_model(config_, interface_x_m(initial_.mesh));
   interface::QuasiDynamicFriction friction(model, initial_.tributary_m.size(),
                                            stability::radiation_damping_Pa_s_per_m(bodies_of(config_)));
-  held_ = {0, 0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states(), {}};
+  rest_ = {0, 0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states(), {}};
   slow_ = std::make_unique<motion::QuasiDynamicSlip>(statics_, std::move(friction), initial_.tributary_m,
                                                      top_speed_m_per_s(config_));
 }
@@ -238,10 +239,10 @@ std::vector<interface::FrictionLaw> Sequence::heal_until(double time_s) {
   for (std::size_t k = 0; k < laws.size(); ++k) {
     double& mu_s = laws[k].parameter("mu_s");
     mu_s +=
-        sequence.healing_per_e_fold * std::log1p((time_s - held_.rests_since_s[k]) / sequence.healing_time_s);
+        sequence.healing_per_e_fold * std::log1p((time_s - rest_.rests_since_s[k]) / sequence.healing_time_s);
     initial_.mu_s.push_back(mu_s);
   }
-  statics_.set_mu_s(initial_.mu_s);
+  statics_.set_mu_s(initial_.mu_s, "sequence.healing_per_e_fold");
   return laws;
 }
 
@@ -249,12 +250,12 @@ std::vector<interface::FrictionLaw> Sequence::heal_to_critical() {
   // From below: what mu_s has grown to at a shear is reached at a later one, until they meet.
   constexpr double accuracy = 1e-10;
   constexpr int most = 1000;
-  const double end_m = path_.shear_m(path_.end_s()) - held_.moved_m;
+  const double end_m = path_.shear_m(path_.end_s()) - rest_.moved_m;
   double shear_m = at_rest_.shear_m;
   for (int i = 0; i < most && shear_m < end_m; ++i) {
     auto laws = heal_until(time_s(shear_m));
     const double critical_m = statics_.shear_to(1).shear_m;
-    if (critical_m - shear_m <= accuracy * std::abs(critical_m + held_.moved_m)) return laws;
+    if (critical_m - shear_m <= accuracy * std::abs(critical_m + rest_.moved_m)) return laws;
     shear_m = critical_m;
   }
   if (shear_m < end_m)
@@ -275,22 +276,24 @@ bool Sequence::stick_to_next() {
     return state.shear_m > at_rest_.shear_m ? state : at_rest_;
   };
   auto critical = at_share(1);
-  initial_.critical_shear_m = critical.shear_m + held_.moved_m;
-  initial_.common = at_share(1 - margin);
-  initial_.spontaneous = at_share(1 + margin);
-  if (time_s(initial_.spontaneous.shear_m) > path_.end_s()) {
-    const double end_m = path_.shear_m(path_.end_s()) - held_.moved_m;
+  initial_.critical_shear_m = critical.shear_m + rest_.moved_m;
+  initial_.subcritical = at_share(1 - margin);
+  initial_.supercritical = at_share(1 + margin);
+  // An event may last beyond the end: the load then goes on to where the path ends, at once.
+  if (const double end_m = path_.shear_m(path_.end_s()) - rest_.moved_m;
+      initial_.supercritical.shear_m > end_m) {
     load_to(LoadingPhase::loaded, statics_.shear_by(std::max(at_rest_.shear_m, end_m)));
     return false;
   }
-  load_to(LoadingPhase::event_begins, initial_.spontaneous);
-  for (auto* state : {&critical, &initial_.common, &initial_.spontaneous}) state->shear_m += held_.moved_m;
+  load_to(LoadingPhase::event_begins, initial_.supercritical);
+  for (auto* state : {&critical, &initial_.subcritical, &initial_.supercritical})
+    state->shear_m += rest_.moved_m;
   if (has_forces(config_))
-    initial_.loads = found_loads(config_, statics_, critical, initial_.common, initial_.tributary_m);
+    initial_.loads = resolved_loads(config_, statics_, critical, initial_.subcritical, initial_.tributary_m);
   return true;
 }
 
-statics::Equilibrium Sequence::slid_to(const motion::SlowSlip& state,
+statics::Equilibrium Sequence::slid_to(const motion::QuasiDynamicState& state,
                                        std::vector<double> u_x_per_shear) const {
   return statics_.slid_to(state.contact, state.u_x_m, std::move(u_x_per_shear), state.shear_m);
 }
@@ -299,12 +302,12 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
   const auto& state = slow_->state();
   const auto& works = slow_->works();
   const auto equilibrium = slid_to(state, {});
-  auto now = row(phase, state.time_s, state.shear_m + held_.moved_m, equilibrium.tractions);
+  auto now = row(phase, state.time_s, state.shear_m + rest_.moved_m, equilibrium.tractions);
   now.energies = from.energies;
   now.energies.time_s = now.time_s;
   now.energies.kinetic = 0;
   add_state(equilibrium, now);
-  now.energies.top_work += works.of_load_J_per_m;
+  now.energies.far_edge_work += works.of_load_J_per_m;
   now.energies.friction_work += works.of_friction_J_per_m;
   now.energies.contact_work += works.of_contact_J_per_m;
   now.wave_loss_J_per_m = from.wave_loss_J_per_m + works.radiated_J_per_m;
@@ -327,15 +330,15 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     record::History row{
         {state.time_s}, at_rest_.tractions.x_m, state.u_x_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa,
         {state.psi}};
-    for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += held_.moved_m - u_tilted.x_m[k];
+    for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += rest_.moved_m - u_tilted.x_m[k];
     slow_rows(row);
     ++n_rows;
     row_V_m_per_s = state.slip_rate_m_per_s;
     row_psi = state.psi;
   };
   const auto has_changed = [&] {
-    // Of psi over a; rates have doubled or halved, of nodes that are not far slower than the fastest: those
-    // of nodes that bear little go up and down by some per cent from step to step.
+    // psi has changed by this share of a; rates have doubled or halved, of nodes that are not far slower than
+    // the fastest: those of nodes that bear little go up and down by some per cent from step to step.
     constexpr double of_state = 0.1, of_rate = 0.5, slow = 0.1;
     const double least_m_per_s = slow * state.fastest_m_per_s();
     for (std::size_t k = 0; k < row_psi.size(); ++k) {
@@ -351,18 +354,26 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     const auto force = statics::contact_force(state.p_Pa, state.t_Pa, initial_.tributary_m);
     return force.shear_N_per_m / force.normal_N_per_m;
   };
-  slow_->start(held_.time_s, held_.shear_m, held_.contact, held_.u_x_m, held_.psi);
+  slow_->start(rest_.time_s, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi);
+  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config_);
+  if (events_.empty() && state.fastest_m_per_s() >= rate_m_per_s)
+    throw UserError(
+        "normal loading alone lets the interface slip at {:.3g} m/s, where an event begins; choose a larger "
+        "{} "
+        "or a smaller {}",
+        state.fastest_m_per_s(), Key("friction.theta_i_s"), Key("friction.V_i_m_per_s"));
   TurnFinder turns(friction(), 0.01 * std::ranges::min(slow_->friction().a()));
   SteadySlip steady(slow_->friction());
   const auto n_before = slow_->n_steps();
   give_row();
   const auto after_step = [&] {
     if (!monitor_(0, 0))
-      throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after the tilt", state.time_s));
-    require_stands(state.time_s, state.shear_m + held_.moved_m, state.t_Pa, state.p_Pa);
+      throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after normal loading", state.time_s));
+    require_stands(state.time_s, state.shear_m + rest_.moved_m, state.t_Pa, state.p_Pa);
     if (std::isinf(path_.end_s()) && steady.see(state))
       throw UserError(
-          "{:.6g} s after the tilt the interface slips steadily, at {:.3g} m/s: no event comes; give {}, or "
+          "{:.6g} s after normal loading the interface slips steadily, at {:.3g} m/s: no event comes; give "
+          "{}, or "
           "a softer machine ({})",
           state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"), Key("loading.shear_stiffness_Pa"));
     if ((slow_->n_steps() - n_before) % record::steps_per_slow_row == 0 &&
@@ -371,15 +382,14 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     const double rate = state.fastest_m_per_s();
     const bool has_turned = turns.see(friction());
     if (has_turned || rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
-      loading_.push_back(slow_row(LoadingPhase::creeps, from));
+      loading_.push_back(slow_row(LoadingPhase::creep, from));
       row_rate_m_per_s = rate;
     }
     return true;
   };
-  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config_);
   bool begins = false;
   while (!begins && state.time_s < path_.end_s()) {
-    slow_->set_edge_speed(path_.speed_m_per_s(state.time_s, state.shear_m + held_.moved_m));
+    slow_->set_edge_speed(path_.speed_m_per_s(state.time_s, state.shear_m + rest_.moved_m));
     begins = slow_->slip_until(path_.part_end_s(state.time_s), rate_m_per_s, after_step);
   }
   give_row();
@@ -387,41 +397,42 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   if (!begins) return false;
   std::vector<double> per_shear;
   for (const double V : state.slip_rate_m_per_s) per_shear.push_back(V / top_speed_m_per_s(config_));
-  initial_.spontaneous = slid_to(state, std::move(per_shear));
-  initial_.spontaneous.shear_m += held_.moved_m;
-  for (auto& contact : initial_.spontaneous.contact)
+  initial_.supercritical = slid_to(state, std::move(per_shear));
+  initial_.supercritical.shear_m += rest_.moved_m;
+  for (auto& contact : initial_.supercritical.contact)
     if (contact == statics::Contact::slip) contact = statics::Contact::stick;
-  initial_.common = initial_.spontaneous;
-  initial_.critical_shear_m = initial_.common.shear_m;
+  initial_.subcritical = initial_.supercritical;
+  initial_.critical_shear_m = initial_.subcritical.shear_m;
   initial_.law_states = {state.psi};
   if (has_forces(config_))
-    initial_.loads = found_loads(config_, statics_, initial_.common, initial_.common, initial_.tributary_m);
+    initial_.loads =
+        resolved_loads(config_, statics_, initial_.subcritical, initial_.subcritical, initial_.tributary_m);
   return true;
 }
 
-void Sequence::take(const Result& result) {
+void Sequence::record_event(const Result& result) {
   const auto& event = result.event;
   SLIPFRONT_ASSERT(event.end == motion::EventEnd::quiet, "the event has not come to rest");
   const auto begins = loading_.back();
   const auto& row_at_end = event.last_row;
   const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
-  const auto u = relative(initial_, initial_.spontaneous);
+  const auto u = relative(initial_, initial_.supercritical);
   const double shear_m = begins.shear_m + top_speed_in_event_m_per_s(config_) * event.time_s;
   const double since_row_s = event.time_s - row_at_end.time_s.front();
-  held_.contact.clear();
-  held_.u_x_m.clear();
+  rest_.contact.clear();
+  rest_.u_x_m.clear();
   double mean_m = 0;
   for (std::size_t k = 0; k < u.x_m.size(); ++k) {
-    held_.contact.push_back(row_at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
-    held_.u_x_m.push_back(u.x_m[k] + row_at_end.slip_m[k]);
-    if (slow_) held_.u_x_m.back() += since_row_s * row_at_end.slip_rate_m_per_s[k];
-    mean_m += held_.u_x_m.back() / static_cast<double>(u.x_m.size());
+    rest_.contact.push_back(row_at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
+    rest_.u_x_m.push_back(u.x_m[k] + row_at_end.slip_m[k]);
+    if (slow_) rest_.u_x_m.back() += since_row_s * row_at_end.slip_rate_m_per_s[k];
+    mean_m += rest_.u_x_m.back() / static_cast<double>(u.x_m.size());
   }
-  for (double& u_x_m : held_.u_x_m) u_x_m -= mean_m;
-  held_.moved_m += mean_m;
-  held_.shear_m = shear_m - held_.moved_m;
-  held_.time_s = begins.time_s + (top_speed_in_event_m_per_s(config_) > 0 ? event.time_s : 0);
-  auto ends = row(LoadingPhase::slip_ends, held_.time_s, shear_m, tractions_at_end);
+  for (double& u_x_m : rest_.u_x_m) u_x_m -= mean_m;
+  rest_.moved_m += mean_m;
+  rest_.shear_m = shear_m - rest_.moved_m;
+  rest_.time_s = begins.time_s + (top_speed_in_event_m_per_s(config_) > 0 ? event.time_s : 0);
+  auto ends = row(LoadingPhase::slip_ends, rest_.time_s, shear_m, tractions_at_end);
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
   ends.energies.kinetic = last.kinetic;
@@ -431,12 +442,12 @@ void Sequence::take(const Result& result) {
   add_event_works(last, ends.energies);
   loading_.push_back(ends);
 
-  if (slow_) held_.psi = row_at_end.law_states.front();
-  if (!held_.rests_since_s.empty())
-    for (const auto& onset : event.record.onsets) held_.rests_since_s[onset.node] = held_.time_s;
-  rest();
-  require_stands(held_.time_s, shear_m, at_rest_.tractions.t_s_Pa, at_rest_.tractions.p_s_Pa);
-  auto rests = row(LoadingPhase::at_rest, held_.time_s, shear_m, at_rest_.tractions);
+  if (slow_) rest_.psi = row_at_end.law_states.front();
+  if (!rest_.rests_since_s.empty())
+    for (const auto& onset : event.record.onsets) rest_.rests_since_s[onset.node] = rest_.time_s;
+  equilibrate();
+  require_stands(rest_.time_s, shear_m, at_rest_.tractions.t_s_Pa, at_rest_.tractions.p_s_Pa);
+  auto rests = row(LoadingPhase::at_rest, rest_.time_s, shear_m, at_rest_.tractions);
   add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
   for (std::size_t k = 0; slow_ && k < row_at_end.slip_rate_m_per_s.size(); ++k)
@@ -447,20 +458,20 @@ void Sequence::take(const Result& result) {
   add_event(result, begins, rests, at_rest_.tractions);
 }
 
-void Sequence::rest() {
+void Sequence::equilibrate() {
   if (slow_) {
-    at_rest_ = statics_.slid_to(held_.contact, held_.u_x_m, {}, held_.shear_m);
+    at_rest_ = statics_.slid_to(rest_.contact, rest_.u_x_m, {}, rest_.shear_m);
     return;
   }
-  if (input::heals(config_)) heal_until(held_.time_s);
-  statics_.hold(held_.contact, held_.u_x_m);
-  at_rest_ = statics_.shear_by(held_.shear_m);
+  if (input::heals(config_)) heal_until(rest_.time_s);
+  statics_.hold(rest_.contact, rest_.u_x_m);
+  at_rest_ = statics_.shear_by(rest_.shear_m);
 }
 
 void Sequence::add_event(const Result& result, const LoadingRow& before, const LoadingRow& after,
                          const record::StaticState& tractions_after) {
   const auto& record = result.event.record;
-  const auto& state = initial_.spontaneous;
+  const auto& state = initial_.supercritical;
   const auto is_inside = [&](std::int32_t node) { return state.is_inside(record.x_m[node]); };
   record::SequenceEvent e;
   e.begin_s = before.time_s;
@@ -475,7 +486,7 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
     if (onset.time_s <= first_s + result.substep_s) first.push_back(static_cast<std::size_t>(onset.node));
   }
   if (!first.empty()) {
-    // Of several patches the one that comes first.
+    // The first one along x where several patches begin.
     const auto begins = [&](std::size_t node) { return std::ranges::find(first, node) != first.end(); };
     auto from = first.front(), to = from;
     while (from > 0 && begins(from - 1)) --from;
@@ -525,14 +536,14 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
     for (const auto& point : longest->points) speeds.push_back(point.v_tip_m_per_s);
     e.median_speed_m_per_s = fronts::median(speeds);
   }
-  predict(e);
+  if (!(e.longest_patch_m < e.nucleation_length_m)) predict(e);
   events_.push_back(e);
 }
 
 void Sequence::predict(record::SequenceEvent& event) {
   if (!predictor_) return;
   if (event_config_) predictor_->set_friction(event_config_->friction_along_x);
-  const auto p = predictor_->predict({}, initial_.spontaneous.peak_x_m, &initial_.spontaneous.tractions);
+  const auto p = predictor_->predict({}, initial_.supercritical.peak_x_m, &initial_.supercritical.tractions);
   for (const auto& front : p.of_fronts.fronts) {
     // The last node of a front that arrests is the one that it does not break.
     const std::size_t unbroken = front.arrests() ? 1 : 0;
@@ -543,24 +554,24 @@ void Sequence::predict(record::SequenceEvent& event) {
 }
 
 void Sequence::serialize(StateArchive& archive) {
-  archive(held_.time_s, held_.moved_m, held_.shear_m, held_.contact, held_.u_x_m, held_.psi,
-          held_.rests_since_s, loading_, events_);
+  archive(rest_.time_s, rest_.moved_m, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi,
+          rest_.rests_since_s, loading_, events_);
   if (!archive.is_loading()) return;
   const std::size_t n = initial_.tributary_m.size();
   const auto are_finite = [](const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
-  require_possible(!events_.empty() && held_.contact.size() == n && held_.u_x_m.size() == n &&
-                       are_finite(held_.u_x_m) && std::isfinite(held_.shear_m) &&
-                       std::isfinite(held_.time_s) && std::isfinite(held_.moved_m) &&
-                       std::ranges::max(held_.contact) <= statics::Contact::open &&
-                       held_.rests_since_s.size() == (input::heals(config_) ? n : 0) &&
-                       are_finite(held_.rests_since_s) && held_.psi.size() == (slow_ ? n : 0) &&
-                       are_finite(held_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
+  require_possible(!events_.empty() && rest_.contact.size() == n && rest_.u_x_m.size() == n &&
+                       are_finite(rest_.u_x_m) && std::isfinite(rest_.shear_m) &&
+                       std::isfinite(rest_.time_s) && std::isfinite(rest_.moved_m) &&
+                       std::ranges::max(rest_.contact) <= statics::Contact::open &&
+                       rest_.rests_since_s.size() == (input::heals(config_) ? n : 0) &&
+                       are_finite(rest_.rests_since_s) && rest_.psi.size() == (slow_ ? n : 0) &&
+                       are_finite(rest_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
                        std::ranges::all_of(
-                           loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::creeps; }),
+                           loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),
                    "a sequence");
-  rest();
+  equilibrate();
 }
 
 }  // namespace slipfront::run

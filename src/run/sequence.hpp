@@ -39,12 +39,12 @@ class Sequence {
   /// @return null where that is beyond sequence.end_s, to which the sample is loaded then
   /// @throws UserError where no shear does it
   /// Under a law with a state: the first one in which a node slips at sequence.inertia_slip_rate_m_per_s.
-  /// @param slow_rows  takes rows of slow slip, their time since the tilt
+  /// @param slow_rows  takes rows of slow slip, their time since normal loading
   const InitialState* next(const SlowRows& slow_rows = [](const record::History&) {});
   /// The case of the event that begins so: where mu_s has grown, with it.
   const input::Case& config_of_event() const { return event_config_ ? *event_config_ : config_; }
   /// Finds the equilibrium behind the event that has begun so, and has come to rest.
-  void take(const Result& result);
+  void record_event(const Result& result);
 
   const std::vector<record::SequenceEvent>& events() const { return events_; }
   const std::vector<record::LoadingRow>& loading() const { return loading_; }
@@ -55,8 +55,8 @@ class Sequence {
  private:
   /// Where nodes in contact stick. The plate is where its mean slip has moved it: that strains nothing, and
   /// would take digits from what does.
-  struct Held {
-    double time_s = 0;  ///< since the tilt
+  struct RestState {
+    double time_s = 0;  ///< since normal loading
     double moved_m = 0;
     double shear_m = 0;  ///< of the top edge beyond that
     std::vector<statics::Contact> contact;
@@ -70,28 +70,29 @@ class Sequence {
   bool stick_to_next();
   /// Gives nodes the mu_s that they have at a time. @return their laws with it
   std::vector<interface::FrictionLaw> heal_until(double time_s);
-  /// The first shear since the tilt, at most that of sequence.end_s, at which t/p inside reaches mu_s, which
-  /// grows.
+  /// The first shear since normal loading, at most that of sequence.end_s, at which t/p inside reaches mu_s,
+  /// which grows.
   std::vector<interface::FrictionLaw> heal_to_critical();
   bool slip_to_next(const SlowRows& slow_rows);
   /// @param u_x_per_shear  see statics::Statics::slid_to
-  statics::Equilibrium slid_to(const motion::SlowSlip& state, std::vector<double> u_x_per_shear) const;
+  statics::Equilibrium slid_to(const motion::QuasiDynamicState& state,
+                               std::vector<double> u_x_per_shear) const;
   /// The row of slow slip after another one from which it has begun.
   record::LoadingRow slow_row(record::LoadingPhase phase, const record::LoadingRow& from) const;
 
   /// Refuses a state in which the plate tips over or no event comes, however far it is loaded.
-  /// @param shear_m  since the tilt
+  /// @param shear_m  since normal loading
   void require_stands(double time_s, double shear_m, const std::vector<double>& t_Pa,
                       const std::vector<double>& p_Pa) const;
-  /// Finds the equilibrium of held_.
-  void rest();
-  /// At which the loading brings about a shear beyond held_.moved_m.
-  double time_s(double shear_m) const { return path_.time_s(shear_m + held_.moved_m, held_.time_s); }
+  /// Finds the equilibrium of rest_.
+  void equilibrate();
+  /// At which the loading brings about a shear beyond rest_.moved_m.
+  double time_s(double shear_m) const { return path_.time_s(shear_m + rest_.moved_m, rest_.time_s); }
   /// Adds the row of an equilibrium after the last one.
   void load_to(record::LoadingPhase phase, const statics::Equilibrium& state);
   /// What the tractions do not tell. @param state  as found: without what the events have moved the plate
   void add_state(const statics::Equilibrium& state, record::LoadingRow& row) const;
-  /// With the works so far. @param shear_m  since the tilt
+  /// With the works so far. @param shear_m  since normal loading
   record::LoadingRow row(record::LoadingPhase phase, double time_s, double shear_m,
                          const record::StaticState& tractions) const;
   /// By the state in which it begins.
@@ -110,7 +111,7 @@ class Sequence {
   motion::Monitor monitor_;
   std::unique_ptr<motion::QuasiDynamicSlip> slow_;  ///< of a law with a state
   statics::Equilibrium at_rest_;                    ///< before the next event
-  Held held_;                                       ///< of a law without a state empty before the first event
+  RestState rest_;                                  ///< of a law without a state empty before the first event
   std::vector<record::LoadingRow> loading_;
   std::vector<record::SequenceEvent> events_;
 };

@@ -121,13 +121,13 @@ void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
       *options_.processes);
   if (kept == nullptr) return;
   try {
-    kept->rest(sums_, slow_sums_);
-    sequence_->serialize(kept->rest);
-    kept->rest.close();
+    kept->body(sums_, slow_sums_);
+    sequence_->serialize(kept->body);
+    kept->body.close();
     const std::size_t n_slow = input::is_slow(config_) ? sums_.size() : 0;
     require_possible(sums_.size() == sequence_->events().size() && slow_sums_.size() == n_slow, "events");
   } catch (const StateError& error) {
-    throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
+    throw UserError("{}: {}; start a new run", kept->body.path().string(), error.what());
   }
   require_parts_unchanged();
   for (std::size_t k = 0; k < sums_.size(); ++k) files::require_intact(event_dir(k + 1));
@@ -166,7 +166,7 @@ bool SequenceSession::run_event() {
   if (event.end == motion::EventEnd::blow_up)
     throw BlowUp(fmt::format("{}: {}; {}", part, event.reason, what_was_kept(folder_)));
   if (event.end != motion::EventEnd::quiet) throw does_not_rest(part, finished.result);
-  sequence_->take(finished.result);
+  sequence_->record_event(finished.result);
   sums_.push_back(files::sha256_of_file(dir / files::checksum_list));
   return true;
 }
@@ -176,12 +176,16 @@ UserError SequenceSession::does_not_rest(const std::string& part, const Result& 
   const auto& row = result.event.last_row;
   const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
   if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
-    return UserError(
-        "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft machine do; choose "
-        "others "
-        "({}, {}), or a later {}; {}",
-        what, Key("loading.shear_stiffness_Pa"), Key("loading.normal_stiffness_Pa"), Key("time.end_s"),
-        what_was_kept(folder_));
+    return config_.plate.machine.is_rigid()
+               ? UserError(
+                     "{}, and slip does not slow down: the load drives it on; choose a slower one ({}), or "
+                     "press harder; {}",
+                     what, Key("loading.shear_speed_over_c_L"), what_was_kept(folder_))
+               : UserError(
+                     "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft "
+                     "machine do; choose others ({}, {}), or a later {}; {}",
+                     what, Key("loading.shear_stiffness_Pa"), Key("loading.normal_stiffness_Pa"),
+                     Key("time.end_s"), what_was_kept(folder_));
   return UserError("{}; choose a later {}, a larger {}, or edges that absorb; {}", what, Key("time.end_s"),
                    Key("material.stiffness_damping_s"), what_was_kept(folder_));
 }
@@ -213,10 +217,7 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
     return initial;
   } catch (const UserError& error) {
     if (sequence_->events().empty()) throw;
-    Message message(fmt::format(
-        "{} is not found: {}; {}{}", event, error.what(),
-        input::heals(config_) ? "mu_s is what it has grown to (sequence.healing_per_e_fold); " : "",
-        what_was_kept(folder_)));
+    Message message(fmt::format("{} is not found: {}; {}", event, error.what(), what_was_kept(folder_)));
     message.keys = error.keys();
     throw UserError(message);
   }
@@ -253,7 +254,7 @@ FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::C
 FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
                                  const SessionOptions& options, const SessionHooks& hooks,
                                  const EventDone& done) {
-  auto [config, kept, sessions] = take_up(folder, expected, hooks.note);
+  auto [config, kept, sessions] = load_unfinished(folder, expected, hooks.note);
   return SequenceSession(folder, config, options, hooks, done, sessions).run(std::move(kept));
 }
 

@@ -59,7 +59,7 @@ class Session {
 
   /// From a checkpoint, or from the beginning.
   Finished run(std::unique_ptr<Checkpoints::Checkpoint> kept);
-  /// The same on another rank. @param in_event  whether rank 0 has a checkpoint of the event
+  /// Runs beside rank 0. @param in_event  whether rank 0 has a checkpoint of the event
   void run_beside(bool in_event) {
     begin_event(nullptr, in_event);
     finish(event_->run());
@@ -83,7 +83,7 @@ class Session {
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
   void write_progress();
-  /// Of the event: by default each rank has threads for its subdomain.
+  /// Execution of the event: by default each rank has threads for its subdomain.
   motion::Execution event_execution() const {
     if (options_.threads) return execution_;
     return {.threads = std::max(1, execution_.threads / processes_.size())};
@@ -125,7 +125,7 @@ void read_from(Checkpoints::Checkpoint* kept, Read&& read) {
     read();
   } catch (const StateError& error) {
     if (kept == nullptr) throw;
-    throw UserError("{}: {}; start a new run", kept->rest.path().string(), error.what());
+    throw UserError("{}: {}; start a new run", kept->body.path().string(), error.what());
   }
 }
 
@@ -181,9 +181,9 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
 void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
     read_from(kept, [&] {
-      read_motion(&kept->rest, stepper, {});
-      kept->rest(ramp);
-      kept->rest.close();
+      read_motion(&kept->body, stepper, {});
+      kept->body(ramp);
+      kept->body.close();
     });
   }
   began_ = true;
@@ -206,7 +206,7 @@ void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
     at_root([&] { stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s())); });
     emplace_event();
   }
-  at_root([&] { rupture_ = rupture_outlook(config_, initial_.common, initial_.tributary_m); });
+  at_root([&] { rupture_ = rupture_outlook(config_, initial_.subcritical, initial_.tributary_m); });
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
@@ -217,20 +217,20 @@ void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
 
 void Session::restore_event(Checkpoints::Checkpoint* kept) {
   const auto with_file = [&](const std::function<void()>& read) { at_root([&] { read_from(kept, read); }); };
-  with_file([&] { initial_ = read_initial_state(kept->rest, config_, processes_); });
+  with_file([&] { initial_ = read_initial_state(kept->body, config_, processes_); });
   const auto loads = from_root(processes_, [&] { return loads_of_event(config_, initial_); });
   event_stepper_ = make_stepper(config_, initial_, event_execution(), processes_);
-  read_from(kept, [&] { read_motion(kept ? &kept->rest : nullptr, *event_stepper_, loads); });
+  read_from(kept, [&] { read_motion(kept ? &kept->body : nullptr, *event_stepper_, loads); });
   with_file([&] {
     results::ResultStream::Extents extents;
-    kept->rest(extents);
+    kept->body(extents);
     stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s()), extents);
   });
   emplace_event();
   auto of_event = processes_.from_root([&](MessageBuffer& to) {
     read_from(kept, [&] {
-      kept->rest(*event_);
-      kept->rest.close();
+      kept->body(*event_);
+      kept->body.close();
     });
     if (processes_.size() > 1) to.append(packed(*event_));  // as large as the record of slip
   });
@@ -296,7 +296,7 @@ void Session::write_progress() {
   const auto start = Clock::now();
   auto breakdown = stepper_->breakdown();
   if (!is_root()) {
-    unmeasured(config_, *stepper_, {});
+    collect(config_, *stepper_, {});
     return;
   }
   motion::Event so_far;
@@ -307,23 +307,23 @@ void Session::write_progress() {
   so_far.record = event_->record();
   so_far.breakdown = std::move(breakdown);
   so_far.tip_slip = event_->tip_slip();
-  auto result = unmeasured(config_, *stepper_, std::move(so_far));
+  auto result = collect(config_, *stepper_, std::move(so_far));
   stream_->hand_over();
   result.stepping_wall_s = wall_s();
-  measure(result, initial_, rupture_);
+  analyse(result, initial_, rupture_);
   write_so_far(dir_, result, energies, initial_, {"running", "", head_.sessions});
   reported_ = Clock::now();
   report_interval_s_ = std::max(min_report_interval_s, seconds_since(start) / report_share);
 }
 
 Finished Session::finish(motion::Event event) {
-  Finished run{unmeasured(config_, *stepper_, std::move(event)), {}};
+  Finished run{collect(config_, *stepper_, std::move(event)), {}};
   run.result.stepping_wall_s = wall_s();
   event_.reset();
   event_stepper_.reset();
   run.initial = std::move(initial_);
   at_root([&] {
-    measure(run.result, run.initial, rupture_);
+    analyse(run.result, run.initial, rupture_);
     write_results(run);
   });
   write_fields(folder_, config_, processes_, hooks_.note);
@@ -365,7 +365,7 @@ void require_unchanged(const std::string& table, const std::string& kept, const 
     throw UserError("{}: was changed since the run was begun; restore it, or start a new run", file);
 }
 
-/// On rank 0, with the others in take_part.
+/// On rank 0, with the others in serve_ranks.
 Finished run_shared(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
                     const SessionHooks& hooks, int sessions, std::unique_ptr<Checkpoints::Checkpoint> kept) {
   Session session(&folder, config, options, hooks, sessions);
@@ -389,6 +389,7 @@ void begin_work(results::ResultFolder& folder, const input::Case& config) {
   try {
     folder.begin();
     write_case(folder.unfinished(), config);
+    Checkpoints(folder.state()).begin(checkpoint_head(config));
   } catch (const WriteError&) {
     folder.abandon();
     throw;
@@ -403,7 +404,7 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 
 Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                 const SessionHooks& hooks) {
-  auto [config, kept, sessions] = take_up(folder, expected, hooks.note);
+  auto [config, kept, sessions] = load_unfinished(folder, expected, hooks.note);
   return run_shared(folder, config, options, hooks, sessions, std::move(kept));
 }
 
@@ -423,8 +424,8 @@ CheckpointHead checkpoint_head(const input::Case& config) {
   return head;
 }
 
-UnfinishedWork take_up(const results::ResultFolder& folder, const input::Case* expected,
-                       const std::function<void(const std::string&)>& note) {
+UnfinishedWork load_unfinished(const results::ResultFolder& folder, const input::Case* expected,
+                               const std::function<void(const std::string&)>& note) {
   UnfinishedWork work{unfinished_case(folder, expected), Checkpoints(folder.state()).last(note)};
   const auto& config = work.config;
   require_room(folder, config);
@@ -433,21 +434,21 @@ UnfinishedWork take_up(const results::ResultFolder& folder, const input::Case* e
   // A session that was killed has left no checkpoint of its own, perhaps.
   for (const char* name : {run_file, sequence_file})
     work.sessions = std::max(work.sessions, sessions_of(folder.unfinished() / name));
-  if (work.kept) {
-    const auto& head = work.kept->head;
-    work.sessions = std::max(work.sessions, head.sessions);
-    if (head.program != program_identity())
+  if (work.kept) work.sessions = std::max(work.sessions, work.kept->head.sessions);
+  const auto head = work.kept ? work.kept->head : Checkpoints(folder.state()).begun();
+  if (head) {
+    if (head->program != program_identity())
       throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
-                      folder.unfinished().string(), files::one_line(head.program), program_identity());
-    require_same(text, head.case_text, file.string());
-    require_unchanged(config.prestress.table.text, head.prestress_table, config.prestress.file);
-    require_unchanged(config.friction_along_x.table.text, head.friction_table, config.friction_along_x.file);
+                      folder.unfinished().string(), files::one_line(head->program), program_identity());
+    require_same(text, head->case_text, file.string());
+    require_unchanged(config.prestress.table.text, head->prestress_table, config.prestress.file);
+    require_unchanged(config.friction_along_x.table.text, head->friction_table, config.friction_along_x.file);
   }
   files::write_text(file, text);  // as it was, however it was written meanwhile
   return work;
 }
 
-void take_part(Processes& processes) {
+void serve_ranks(Processes& processes) {
   // What a signal asks for is rank 0's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
     std::signal(signal, SIG_IGN);
@@ -463,7 +464,7 @@ void take_part(Processes& processes) {
     }
 }
 
-void release(Processes& processes) {
+void stop_ranks(Processes& processes) {
   processes.broadcast(packed(false));
 }
 

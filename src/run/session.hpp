@@ -35,7 +35,7 @@ struct SessionOptions {
 
 /// All three are called by the thread that steps.
 struct SessionHooks {
-  /// Of "ramp" or "event".
+  /// Told the progress of "ramp" or "event".
   std::function<void(const char* part, std::int64_t step, std::int64_t total)> progress;
   std::function<Request()> request;
   std::function<void(const std::string& note)> note;
@@ -81,14 +81,14 @@ struct UnfinishedWork {
 };
 /// @param note  receives a message for each damaged checkpoint
 /// @throws UserError as unfinished_case, and where the checkpoint is of another program or case
-UnfinishedWork take_up(const results::ResultFolder& folder, const input::Case* expected,
-                       const std::function<void(const std::string&)>& note);
-/// Of checkpoints of a case.
+UnfinishedWork load_unfinished(const results::ResultFolder& folder, const input::Case* expected,
+                               const std::function<void(const std::string&)>& note);
+/// Head of the checkpoints of a case.
 CheckpointHead checkpoint_head(const input::Case& config);
 
 /// On the ranks but 0: their parts of the runs that rank 0 begins or goes on with, until it releases them.
-void take_part(Processes& processes);
-void release(Processes& processes);
+void serve_ranks(Processes& processes);
+void stop_ranks(Processes& processes);
 
 /// What to tell of a run that has not come to its end, and how to go on with it.
 std::string what_was_kept(const results::ResultFolder& folder);

@@ -46,7 +46,7 @@ std::optional<InitialState> SharedStates::take(const input::Case& config,
     auto initial = read_initial_state(archive, config);
     archive.close();
     require_possible(
-        initial.prescribed || (initial.common.u_m.size() > 0 && initial.spontaneous.u_m.size() > 0),
+        initial.prescribed || (initial.subcritical.u_m.size() > 0 && initial.supercritical.u_m.size() > 0),
         "displacements");
     return initial;
   } catch (const UserError& error) {

@@ -13,7 +13,7 @@ namespace slipfront::run {
 
 namespace {
 
-/// Of a body that is described upside down.
+/// Turns a body that is described upside down.
 void turn_over(mesh::Mesh& mesh) {
   for (double& y : mesh.y_m) y = -y;
   for (auto& [a, b, c, d] : mesh.cells) {  // counterclockwise again

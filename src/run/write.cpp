@@ -62,7 +62,7 @@ Json friction_work_json(const Result& result, const InitialState& initial) {
           {"residual_J_per_m", weakens ? all - breakdown : all}};
 }
 
-Json loads_json(const FoundLoads& loads) {
+Json loads_json(const ResolvedLoads& loads) {
   return {{"normal_force_N_per_m", loads.normal_force_N_per_m},
           {"mean_pressure_Pa", loads.mean_pressure_Pa},
           {"tilt_left_m", loads.tilt_left_m},
@@ -75,16 +75,16 @@ Json loads_json(const FoundLoads& loads) {
 
 Json statics_json(const InitialState& initial) {
   if (initial.prescribed)
-    return {{"common_peak_t_over_p", initial.common.peak_ratio},
-            {"peak_x_m", initial.common.peak_x_m},
-            {"inside_from_m", initial.common.inside_from_m},
-            {"inside_to_m", initial.common.inside_to_m}};
+    return {{"common_peak_t_over_p", initial.subcritical.peak_ratio},
+            {"peak_x_m", initial.subcritical.peak_x_m},
+            {"inside_from_m", initial.subcritical.inside_from_m},
+            {"inside_to_m", initial.subcritical.inside_to_m}};
   Json json = {{"critical_shear_m", initial.critical_shear_m},
-               {"common_shear_m", initial.common.shear_m},
-               {"common_peak_t_over_p", initial.common.peak_ratio},
-               {"peak_x_m", initial.common.peak_x_m},
-               {"inside_from_m", initial.common.inside_from_m},
-               {"inside_to_m", initial.common.inside_to_m},
+               {"common_shear_m", initial.subcritical.shear_m},
+               {"common_peak_t_over_p", initial.subcritical.peak_ratio},
+               {"peak_x_m", initial.subcritical.peak_x_m},
+               {"inside_from_m", initial.subcritical.inside_from_m},
+               {"inside_to_m", initial.subcritical.inside_to_m},
                {"unknowns", initial.n_unknowns},
                {"solver", statics::name_of(initial.solver)},
                {"solver_bytes", std::llround(initial.solver_bytes)},
@@ -101,8 +101,8 @@ Json statics_json(const InitialState& initial) {
       }
       slip = {{"from_x_m", from}, {"to_x_m", to}, {"first_s", ramp.record.onsets.front().time_s}};
     }
-    json["ramp"] = {{"critical_shear_m", ramp.spontaneous.shear_m},
-                    {"relative_to_direct", ramp.spontaneous.shear_m / initial.critical_shear_m - 1},
+    json["ramp"] = {{"critical_shear_m", ramp.supercritical.shear_m},
+                    {"relative_to_direct", ramp.supercritical.shear_m / initial.critical_shear_m - 1},
                     {"steps", ramp.steps},
                     {"onsets_before_critical", ramp.record.n_onsets()},
                     {"onsets_inside", ramp.n_onsets_inside()},
@@ -315,7 +315,7 @@ results::RunFiles run_files(const input::Case& config, const InitialState& initi
   const auto origin = origin_of(config);
   const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
   results::RunFiles files{
-      history_table(config, initial.common.tractions.x_m),
+      history_table(config, initial.subcritical.tractions.x_m),
       {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
   if (initial.base) {
     const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));
@@ -343,7 +343,7 @@ void write_case(const std::filesystem::path& dir, const input::Case& config) {
 }
 
 void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial) {
-  const auto& tractions = initial.common.tractions;
+  const auto& tractions = initial.subcritical.tractions;
   std::vector<results::NamedColumn> columns;
   const auto& parameters = description_of(config.friction).parameters;
   if (config.friction_along_x.varies()) columns.resize(parameters.size());

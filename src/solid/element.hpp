@@ -61,7 +61,7 @@ struct StrainAndStress {
   PlaneTensor strain, stress_Pa;
 };
 
-/// Of the displacements of a cell's nodes, and of a uniform stress where there is one.
+/// Strain and stress of a cell by the displacements of its nodes, and by a uniform stress where there is one.
 StrainAndStress strain_and_stress(const CellShape& shape, const std::array<double, 8>& u_m,
                                   const Material& material, const std::optional<UniformStress>& further,
                                   double time_s);

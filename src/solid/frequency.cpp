@@ -40,7 +40,7 @@ mesh::Mesh part_of(const mesh::Mesh& mesh, const std::vector<bool>& in_part) {
   return part;
 }
 
-/// Of the squares.
+/// Smallest side of the squares of a mesh.
 double smallest_side_m(const mesh::Mesh& mesh) {
   double smallest_m = infinity;
   for (const auto& cell : mesh.cells) {
@@ -51,7 +51,7 @@ double smallest_side_m(const mesh::Mesh& mesh) {
   return smallest_m;
 }
 
-/// Of those on a row of nodes, as cell_coordinates has it.
+/// Smallest side of the squares on a row of nodes, as cell_coordinates has it.
 double smallest_side_of_interface_m(const mesh::Mesh& interface) {
   double smallest_m = infinity;
   const auto look_at = [&](mesh::Node n, mesh::Node next) {
@@ -64,7 +64,7 @@ double smallest_side_of_interface_m(const mesh::Mesh& interface) {
   return smallest_m;
 }
 
-/// Of the cells that are no squares with those around them; 0 where all are squares.
+/// Largest frequency of the cells that are no squares with those around them; 0 where all are squares.
 double frequency_of_others_rad_per_s(const mesh::Mesh& mesh, const Material& material) {
   std::vector<bool> near(mesh.cells.size(), false), of_near(mesh.n_nodes(), false);
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {

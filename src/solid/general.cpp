@@ -164,7 +164,7 @@ struct GeneralRows::Cells {
   std::vector<SharedStiffness> shared;
   std::vector<Corners> shared_corners, own_corners;  ///< [batches]
   std::vector<LaneTriangles> own;                    ///< [batches]
-  /// Of each row, where its cells' forces are: those of the shared batches, then those of the others.
+  /// Places of the forces of each row's cells: those of the shared batches, then those of the others.
   std::vector<std::int32_t> first_force, force;
   std::size_t n_batches() const { return shared_corners.size() + own_corners.size(); }
 };

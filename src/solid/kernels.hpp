@@ -76,8 +76,8 @@ struct KickSums {
   double w_d = 0, v_d = 0, d_d = 0;
 };
 
-/// The same as add_interior_row, and u += dt v. Rows of w are read up to lanes_of<Real> columns before the
-/// span and up to twice as many after it; what stands there does not matter.
+/// Adds an interior row as add_interior_row does, and u += dt v. Rows of w are read up to lanes_of<Real>
+/// columns before the span and up to twice as many after it; what stands there does not matter.
 template <bool with_sums, class Real>
 void push_interior_row(const InteriorStencil& stencil, Span span, double time_step_s, ConstRowOf<Real> south,
                        ConstRowOf<Real> middle, ConstRowOf<Real> north, Real* __restrict v_x,

@@ -173,7 +173,7 @@ class RowKinds {
         for (const auto n : cell) is_general_[n] = true;
       }
     }
-    for (const auto& absorbing : mesh.absorbing) is_boundary_[absorbing.node] = true;
+    for (const auto& absorbing : mesh.boundary) is_boundary_[absorbing.node] = true;
   }
 
   bool is_general(mesh::Node n) const { return is_general_[n] && !op_.is_far_edge[n] && touches_part(n); }

@@ -34,7 +34,7 @@ struct InteriorStencil {
   double centre, along, across, corner, twist;
 };
 
-/// The same for a node with two equal squares above it and none below; with the squares below it, north is
+/// Stencil of a node with two equal squares above it and none below; with the squares below it, north is
 /// south and `shear` and `twist` change sign. With the squares to its right, x and y are exchanged, with them
 /// north and east, west and south.
 /// a_x = centre_x w_x + side_x (E + W) + up_x N + corner_x (NE + NW) + shear (E - W of w_y) + twist (NE - NW
@@ -49,7 +49,7 @@ struct EdgeStencil {
 /// Columns of one grid row, or rows of a matrix.
 using mesh::Span;
 
-/// Of all columns.
+/// All columns of a block.
 inline constexpr Span all_columns = {0, std::numeric_limits<int>::max()};
 
 /// Rows of a block-sparse matrix for a list of nodes: any mesh.
@@ -114,10 +114,10 @@ struct NodeRow {
 /// Nodes of one grid row that share a stencil, or have stencils of their own.
 struct StencilRow {
   int row = 0;  ///< of Operator::rows
-  /// Of own stencils: all, or above or below where no node has others.
+  /// Squares of the own stencils: all, or above or below where no node has others.
   Squares squares = Squares::all;
-  /// Of the stencil: the mass of a node amid the smallest squares over that of one amid the block's; at
-  /// horizontal edges half a square's mass on either side over the node's mass.
+  /// Factor of the stencil: the mass of a node amid the smallest squares over that of one amid the block's;
+  /// at horizontal edges half a square's mass on either side over the node's mass.
   double scale = 1;
   std::vector<Span> spans;
   std::size_t n_own = 0;  ///< nodes with own stencils: all, or none where one is shared
@@ -216,7 +216,7 @@ double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& materia
                                  const mesh::Mesh* corners = nullptr);
 inline constexpr int rings_around_others = 16;
 
-/// The same of squares alone, with this smallest side.
+/// Largest frequency of a mesh of squares alone, with this smallest side.
 double frequency_of_squares_rad_per_s(double side_m, const Material& material);
 
 /// Nodes from which on iterations over the whole mesh would take longer than many steps.

@@ -30,7 +30,7 @@ struct StencilTerms {
   V to_left_x, to_left_y;
 };
 
-/// Of the columns from i on.
+/// Terms of the columns from i on.
 template <class V, class Real, class In>
 inline StencilTerms<V> stencil_terms(const StencilOf<Real>& s, int i, ConstRowOf<In> south,
                                      ConstRowOf<In> middle, ConstRowOf<In> north) {

@@ -75,10 +75,11 @@ struct Outlook {
   std::size_t n_weakening = 0;  ///< with residual below strength
   std::size_t n_driven = 0;     ///< with residual below t: there a front releases energy
   std::size_t n_barriers = 0;   ///< what follows is without them, unless all nodes are
-  Spread S{nan, nan, nan};  ///< not numbers under a law with a state
-  Spread drop_ratio = S;     ///< (t - residual)/(strength - residual) = 1/(1 + S), the seismic ratio; 0 where t is below
+  Spread S{nan, nan, nan};      ///< not numbers under a law with a state
+  Spread drop_ratio =
+      S;  ///< (t - residual)/(strength - residual) = 1/(1 + S), the seismic ratio; 0 where t is below
   double modulus_Pa = 0;
-  /// Of the median node; none where the law has no length, and Griffith's where none is driven.
+  /// Lengths of the median node; none where the law has no length, and Griffith's where none is driven.
   std::optional<double> nucleation_length_m, process_zone_m, griffith_half_length_m, supershear_half_length_m;
   std::optional<double> unstable_wavelength_m;  ///< of a law with a state
   std::string regime;                           ///< one plain line

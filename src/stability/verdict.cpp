@@ -150,7 +150,7 @@ WellPosedness well_posedness_of_state(const Bodies& bodies, WellPosedness w) {
   return w;
 }
 
-/// Of a law without a state. @throws Inseparable
+/// Adds the growth under a law without a state. @throws Inseparable
 void add_growth(const Bodies& bodies, double element_size_m, WellPosedness& w) {
   constexpr double pi = std::numbers::pi;
   w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);

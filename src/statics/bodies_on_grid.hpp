@@ -11,7 +11,7 @@ namespace slipfront::statics {
 
 /// Where the nodes of a plate, and of a base below it, are on the finest grid of the multigrid.
 ///
-/// Of two bodies the stiffer one is the grid's lower one. Then what is fixed or freed by contact, the
+/// The stiffer one of two bodies is the grid's lower one. Then what is fixed or freed by contact, the
 /// relative displacement, moves the softer body alone, and point smoothing does well whatever the ratio of
 /// the moduli. Where the plate is the lower one the grid is upside down.
 class BodiesOnGrid {
@@ -30,7 +30,7 @@ class BodiesOnGrid {
   bool has_base() const { return base_ != nullptr; }
   /// Grid node with the relative displacement of each of mesh.interface_nodes.
   std::vector<mesh::Node> interface() const;
-  /// Of the plate's relative displacement, and of the force of the contact on it, from the grid's, along x;
+  /// Sign of the plate's relative displacement, and of the contact's force on it, from the grid's, along x;
   /// along y they are the same.
   double x_sign() const { return plate_is_lower_ ? -1 : 1; }
   /// The plate's u_y from the grid's.

@@ -27,7 +27,7 @@ class CondensedInterface {
   Factorisation::Load load(const TopDisplacement& top) const { return plate_->load(top); }
   /// g, N.
   Eigen::VectorXd relative_load(const Factorisation::Load& load) const;
-  /// Of nodes in contact and open ones.
+  /// Sliding of nodes in contact, beside open ones.
   /// @param load, unit_shear  of the loaded edge, and of its moving on by 1 m
   /// @param gap_m, tributary_m  [interface nodes]
   std::unique_ptr<SlidingInterface> sliding(const Factorisation::Load& load,

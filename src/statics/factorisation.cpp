@@ -37,7 +37,7 @@ std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
 Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top)
     : mesh_(mesh), top_(top) {
   try {
-    set_grips();
+    set_springs();
     for (const std::size_t c : {0, 1})
       if (!is_held_along(c)) spring_[c] = material.youngs_modulus_Pa;
     factorise(material);
@@ -48,22 +48,22 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   near_top_ = solid::assemble_rows(mesh, material, nodes_near_top(mesh));
 }
 
-void Factorisation::set_grips() {
-  grip_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), 0);
+void Factorisation::set_springs() {
+  spring_N_per_m_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), 0);
   for (const auto n : mesh_.far_edge_nodes) {
-    if (top_ == TopConstraint::both) grip_[2 * n] = infinity;
-    if (top_ != TopConstraint::gripped) grip_[2 * n + 1] = infinity;
+    if (top_ == TopConstraint::both) spring_N_per_m_[2 * n] = infinity;
+    if (top_ != TopConstraint::machine) spring_N_per_m_[2 * n + 1] = infinity;
   }
-  if (top_ != TopConstraint::gripped) return;
-  for (const auto& a : mesh_.absorbing) {
-    grip_[2 * a.node] = a.grip_x_N_per_m.value_or(0);
-    grip_[2 * a.node + 1] = a.grip_y_N_per_m.value_or(0);
+  if (top_ != TopConstraint::machine) return;
+  for (const auto& a : mesh_.boundary) {
+    spring_N_per_m_[2 * a.node] = a.spring_x_N_per_m.value_or(0);
+    spring_N_per_m_[2 * a.node + 1] = a.spring_y_N_per_m.value_or(0);
   }
 }
 
 bool Factorisation::is_held_along(std::size_t c) const {
-  for (std::size_t k = c; k < grip_.size(); k += 2)
-    if (grip_[k] == infinity) return true;
+  for (std::size_t k = c; k < spring_N_per_m_.size(); k += 2)
+    if (spring_N_per_m_[k] == infinity) return true;
   return false;
 }
 
@@ -77,7 +77,7 @@ std::vector<std::int32_t> Factorisation::number_unknowns() {
     for (; k < end; ++k) {
       const auto n = order.nodes[k];
       for (const auto u : {2 * n, 2 * n + 1})
-        if (grip_[u] != infinity) unknown_[u] = n_unknowns_++;
+        if (spring_N_per_m_[u] != infinity) unknown_[u] = n_unknowns_++;
     }
     block_ends.push_back(n_unknowns_);
   }
@@ -95,8 +95,8 @@ void Factorisation::factorise(const solid::Material& material) {
                   {"the fronts of the factorisation", factor_->front_bytes(), smaller}},
                  fmt::format("the factorisation of {} static unknowns", n_unknowns_));
 
-  // A grip's spring counts to the first cell of its node that is asked for.
-  auto left = grip_;
+  // A machine's spring counts to the first cell of its node that is asked for.
+  auto left = spring_N_per_m_;
   solid::CellStiffness K{}, K_with_springs{};
   solid::CellCoordinates shape_of_K{};
   const auto stiffness_of = [&](std::size_t cell) -> const solid::CellStiffness& {
@@ -164,17 +164,17 @@ solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::Vecto
   std::vector<double> f(n_unknowns_);
   const auto hold = [&](std::vector<double> solid::Field::*component, mesh::Node n, double u_m) {
     const auto at = 2 * n + (component == &solid::Field::y ? 1 : 0);
-    if (grip_[at] == infinity) (u.*component)[n] = u_m;
-    if (grip_[at] == infinity || top_ != TopConstraint::gripped) return;
-    f[unknown_[at]] += grip_[at] * u_m;
+    if (spring_N_per_m_[at] == infinity) (u.*component)[n] = u_m;
+    if (spring_N_per_m_[at] == infinity || top_ != TopConstraint::machine) return;
+    f[unknown_[at]] += spring_N_per_m_[at] * u_m;
     if (top.tilt_force_N.size() > 0) f[unknown_[at]] += (top.tilt_force_N.*component)[n];
   };
   for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
-    if (!mesh_.is_pushed || top_ != TopConstraint::gripped)
+    if (!mesh_.is_pushed || top_ != TopConstraint::machine)
       hold(&solid::Field::x, mesh_.far_edge_nodes[k], top.u_x_m[k]);
     hold(&solid::Field::y, mesh_.far_edge_nodes[k], top.u_y_m[k]);
   }
-  for (std::size_t k = 0; top_ == TopConstraint::gripped && k < mesh_.pushed_nodes.size(); ++k)
+  for (std::size_t k = 0; top_ == TopConstraint::machine && k < mesh_.pushed_nodes.size(); ++k)
     hold(&solid::Field::x, mesh_.pushed_nodes[k], top.pushed_u_x_m[k]);
   solid::for_each_row_product(near_top_, u, [&](std::size_t r, double x, double y) {
     const auto n = near_top_.node[r];

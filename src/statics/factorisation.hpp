@@ -44,7 +44,7 @@ class Factorisation {
   Load load(const TopDisplacement& top) const;
   /// Displacement of all nodes under the load for given displacements of the interface.
   solid::Field displacement(const Load& load, const Eigen::VectorXd& interface_u_m) const;
-  /// The same under given forces on the interface, with the loaded edge held where it is. Both its
+  /// Displacement under given forces on the interface, with the loaded edge held where it is. Both its
   /// displacements have to be prescribed.
   solid::Field displacement(const Eigen::VectorXd& interface_force_N) const;
 
@@ -54,7 +54,7 @@ class Factorisation {
  private:
   /// In the order of dissection, the interface last. @return the number behind the last unknown of each block
   std::vector<std::int32_t> number_unknowns();
-  void set_grips();
+  void set_springs();
   /// Whether a displacement along x, or y, is prescribed anywhere.
   bool is_held_along(std::size_t component) const;
   void factorise(const solid::Material& material);
@@ -64,7 +64,7 @@ class Factorisation {
   const mesh::Mesh& mesh_;
   TopConstraint top_;
   /// Stiffness of what holds the loaded edge and what is pushed; infinite: prescribed. [2 nodes], N/m
-  std::vector<double> grip_;
+  std::vector<double> spring_N_per_m_;
   /// Springs along x and y under the interface nodes, N/m, that keep the factorised matrix definite where
   /// nothing rigid holds the plate. S is without them.
   std::array<double, 2> spring_ = {0, 0};

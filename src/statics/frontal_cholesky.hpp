@@ -30,8 +30,8 @@ class FrontalCholesky {
   /// @param block_ends  the number behind the last unknown of each block, increasing
   FrontalCholesky(std::vector<std::int32_t> block_ends, std::vector<CellUnknowns> cells);
 
-  /// Of the factor, of the fronts that are there at once while it is made, and of the numbers that describe
-  /// both.
+  /// Size of the factor, of the fronts that are there at once while it is made, and of the numbers that
+  /// describe both.
   double factor_bytes() const { return sizeof(double) * static_cast<double>(n_values_); }
   double front_bytes() const { return front_bytes_; }
 

@@ -5,7 +5,7 @@
 
 namespace slipfront::statics {
 
-/// Of a stiffness that is positive definite but for rounding.
+/// A stiffness is not positive definite, but by rounding.
 struct Indefinite : UserError {
   Indefinite()
       : UserError(

@@ -337,7 +337,7 @@ class LevelEquations {
     return false;
   }
 
-  // Of bicgstab, with v = product_:
+  // Steps of bicgstab, with v = product_:
   /// direction = shadow = r; returns r . shadow.
   double start_shadow() {
     if (shadow_.size() == 0) shadow_ = product_ = GridField<float>(residual_.size());
@@ -560,8 +560,9 @@ class IterativeLoadCase : public LoadCase {
 }  // namespace
 
 double IterativeSolver::bytes() const {
-  // Of each unknown: the cycle's z, on coarser levels with a right-hand side; residual; direction, and two
-  // more where nodes slip; two displacements of the load case; half the coordinates and numbers of a node.
+  // Bytes of each unknown: the cycle's z, on coarser levels with a right-hand side; residual; direction, and
+  // two more where nodes slip; two displacements of the load case; half the coordinates and numbers of a
+  // node.
   constexpr double single = 4, twice = 8;
   return static_cast<double>(n_unknowns_) * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 16);
 }

@@ -205,7 +205,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
-  if (mesh.is_gripped || choose_solver(solver, n_unknowns) == StaticSolver::direct)
+  if (mesh.has_machine || choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);
 }

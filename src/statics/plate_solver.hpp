@@ -17,12 +17,12 @@ namespace slipfront::statics {
 /// Contact state of an interface node at rest.
 enum class Contact : std::uint8_t { stick, slip, open };
 
-/// Which displacements of the loaded edge are prescribed; gripped: what mesh.absorbing says of it, and of the
+/// Which displacements of the loaded edge are prescribed; machine: what mesh.boundary says of it, and of the
 /// nodes under the pusher.
-enum class TopConstraint { both, vertical, gripped };
+enum class TopConstraint { both, vertical, machine };
 /// What holds a plate that is sheared.
 inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
-  return mesh.is_gripped ? TopConstraint::gripped : TopConstraint::both;
+  return mesh.has_machine ? TopConstraint::machine : TopConstraint::both;
 }
 
 /// How the loaded edge, or what is pushed, moves on from its prescribed displacements, by a length that
@@ -85,7 +85,7 @@ class PlateSolver {
   virtual bool iterates() const { return false; }
   /// Multigrid cycles on the finest level so far; 0 where there are none.
   virtual int n_cycles() const { return 0; }
-  /// Of a plate held as under shear.
+  /// Sliding of a plate held as under shear.
   /// @pre it solves directly
   virtual std::unique_ptr<SlidingInterface> sliding(const TopDisplacement& top,
                                                     const std::vector<Contact>& contact) const;

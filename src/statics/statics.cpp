@@ -213,7 +213,7 @@ constexpr int iterations_at_once = 40;  ///< then one contradiction at a time
 /// Error in the energy norm of the first iterative solution, its decrease from one change of contact to the
 /// next, and the error with which the final contact states are confirmed.
 constexpr double first_accuracy = 1e-3, accuracy_decrease = 0.5, final_accuracy = 1e-10;
-/// The same with which coarse levels end and the finest then begins.
+/// Accuracy with which coarse levels end and the finest then begins.
 constexpr double guess_accuracy = 2e-4;
 /// Contradictions of a contact state that count, over the largest pressure or displacement.
 constexpr double state_tolerance = 1e-9;
@@ -231,8 +231,8 @@ Message keys_of_tilt(const Loading& loading) {
   throw UserError(
       "the static contact iteration does not converge: contact opens nearly everywhere, or a tall plate "
       "tips; "
-      "change {}, {}, or {}",
-      keys_of_tilt(loading), Key("plate.height_m"), Key("plate.corner"));
+      "change {}, {}, {}, or {}",
+      keys_of_tilt(loading), Key("plate.height_m"), Key("loading.edge_margin_m"), Key("plate.corner"));
 }
 
 /// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each
@@ -477,10 +477,10 @@ void Statics::press_down(double compliance_m_per_Pa) {
 solid::Field Statics::tilt_force_N(const solid::Material& material) const {
   std::vector<mesh::Node> nodes;
   solid::Field has_spring(mesh_.n_nodes());
-  for (const auto& a : mesh_.absorbing) {
-    has_spring.x[a.node] = mesh::is_spring(a.grip_x_N_per_m);
-    has_spring.y[a.node] = mesh::is_spring(a.grip_y_N_per_m);
-    if (mesh::is_spring(a.grip_x_N_per_m) || mesh::is_spring(a.grip_y_N_per_m)) nodes.push_back(a.node);
+  for (const auto& a : mesh_.boundary) {
+    has_spring.x[a.node] = mesh::is_spring(a.spring_x_N_per_m);
+    has_spring.y[a.node] = mesh::is_spring(a.spring_y_N_per_m);
+    if (mesh::is_spring(a.spring_x_N_per_m) || mesh::is_spring(a.spring_y_N_per_m)) nodes.push_back(a.node);
   }
   if (nodes.empty()) return {};
   solid::Field force_N(mesh_.n_nodes());
@@ -507,14 +507,14 @@ double Statics::shear_height_m(const Equilibrium& state) const {
 double Statics::machine_energy_J_per_m(const Equilibrium& state) const {
   double energy = 0;
   // By how much a spring is longer than in the tilted plate.
-  const auto add = [&](const std::optional<double>& grip_N_per_m, double force_N, double stretch_m) {
-    if (mesh::is_spring(grip_N_per_m)) energy += (force_N + 0.5 * *grip_N_per_m * stretch_m) * stretch_m;
+  const auto add = [&](const std::optional<double>& spring_N_per_m, double force_N, double stretch_m) {
+    if (mesh::is_spring(spring_N_per_m)) energy += (force_N + 0.5 * *spring_N_per_m * stretch_m) * stretch_m;
   };
   const auto &u = state.u_m, &u_tilted = tilted_.u_m, &force_N = tilted_top_.tilt_force_N;
   if (force_N.size() == 0) return 0;
-  for (const auto& [n, side_m, top_m, grip_x, grip_y] : mesh_.absorbing) {
-    add(grip_x, force_N.x[n], state.shear_m - (u.x[n] - u_tilted.x[n]));
-    add(grip_y, force_N.y[n], -(u.y[n] - u_tilted.y[n]));
+  for (const auto& [n, side_m, top_m, spring_x, spring_y] : mesh_.boundary) {
+    add(spring_x, force_N.x[n], state.shear_m - (u.x[n] - u_tilted.x[n]));
+    add(spring_y, force_N.y[n], -(u.y[n] - u_tilted.y[n]));
   }
   return energy;
 }
@@ -591,9 +591,10 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
       solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
-void Statics::set_mu_s(std::vector<double> mu_s) {
+void Statics::set_mu_s(std::vector<double> mu_s, std::string key) {
   SLIPFRONT_ASSERT(mu_s.size() == mu_s_.size(), "mu_s of another interface");
   mu_s_ = std::move(mu_s);
+  mu_s_key_ = std::move(key);
   last_.reset();
 }
 
@@ -659,9 +660,10 @@ std::string Statics::name_of_ratio(double share) const {
 Equilibrium Statics::shear_to(double share) const {
   if (tilted_.peak_ratio > ratio_at_peak(tilted_, share))
     throw UserError(
-        "the tilt alone brings t/p inside the interface to {:.6g} at x = {:.4g} m, not below {}; raise {} or "
-        "change the tilt",
-        tilted_.peak_ratio, tilted_.peak_x_m, name_of_ratio(share), Key(mu_s_key_));
+        "the tilt alone brings t/p inside the interface to {:.6g} at x = {:.4g} m, not below {}; raise {}, "
+        "lower {}, or change the tilt",
+        tilted_.peak_ratio, tilted_.peak_x_m, name_of_ratio(share), Key(mu_s_key_),
+        Key("loading.critical_margin"));
   bool reached = true;
   Equilibrium e = shear(
       [&](const ContactProblem& problem, const Inside& inside) {

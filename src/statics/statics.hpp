@@ -33,9 +33,9 @@ struct ContactStates {
 struct Equilibrium {
   solid::Field u_m;          ///< [nodes] displacement
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
-  /// The same of a base, described upside down; empty for the rigid plane.
+  /// Displacements of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
-  double shear_m = 0;  ///< displacement of what loads along x since the tilt: the edge, or the machine
+  double shear_m = 0;  ///< displacement of what loads along x since normal loading: the edge, or the machine
   std::vector<Contact> contact;               ///< [interface nodes]
   record::StaticState tractions;              ///< [interface nodes]
   double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside, along the load
@@ -108,7 +108,8 @@ class Statics {
   void hold(std::vector<Contact> contact, std::vector<double> u_x_m);
 
   /// Other coefficients at rest, from here on. [interface nodes]
-  void set_mu_s(std::vector<double> mu_s);
+  /// @param key  of the case file, which decides on it
+  void set_mu_s(std::vector<double> mu_s, std::string key);
 
   /// Equilibrium at the shear at which the largest t/(mu_s p) inside equals `share`.
   /// @throws UserError where no shear does it.
@@ -117,7 +118,7 @@ class Statics {
   /// The largest t/(mu_s p) inside.
   double share_of_strength(const Equilibrium& state) const;
 
-  /// Equilibrium at a given shear since the tilt.
+  /// Equilibrium at a given shear since normal loading.
   Equilibrium shear_by(double shear_m) const;
 
   /// Equilibrium with the nodes that stick anywhere along x, whatever friction bears. Others slip without it.
@@ -134,7 +135,7 @@ class Statics {
   /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
   Equilibrium shear_to_force(double force_N_per_m) const;
 
-  /// Energy in the machine's springs less the work of its constant forces, since the tilt.
+  /// Energy in the machine's springs less the work of its constant forces, since normal loading.
   double machine_energy_J_per_m(const Equilibrium& state) const;
 
   /// Where the force along x acts on the plate: at the height of the loaded edge, or amid a pusher's forces;
@@ -169,9 +170,10 @@ class Statics {
   std::string mu_s_key_;
   MayContinue may_continue_;
   std::unique_ptr<PlateSolver> solver_;
-  solid::BlockRows pushed_rows_;       ///< of K
-  TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
-  std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
+  solid::BlockRows pushed_rows_;  ///< of K
+  TopDisplacement tilted_top_;    ///< the loaded edge after the tilt
+  std::unique_ptr<LoadCase>
+      sheared_;  ///< the loaded edge where it stands after normal loading, then moved along x
   Equilibrium tilted_;
   /// What nodes in contact hold before the shear: the tilted plate's, or after slip.
   std::vector<Contact> held_contact_;

@@ -150,3 +150,23 @@ def test_a_fracture_energy_of_the_mesh_is_called_so(program, coarse, write_case)
     slip = sets("friction.law=slip_weakening", "event.kind=left", "friction.d_c_m=4e-5")
     printed = require_done(program("run", coarse, "-o", "of_slip", *slip)).stdout
     assert said not in printed
+
+
+@pytest.mark.parametrize(
+    "changes, told",
+    [
+        (
+            ["base.youngs_modulus_Pa=5e6", "loading.mean_pressure_Pa=5e6"],
+            "of Young's modulus of the base, beyond small strains",
+        ),
+        (["material.poissons_ratio=0.4999", "material.plane=strain"], "too stiff (volumetric locking)"),
+        (["friction.mu_s=0"], None),  # no strength that waves of the load could carry a part of
+    ],
+)
+def test_notes_on_bodies_and_loads(program, write_case, changes, told):
+    body = 'kind = "body"\nheight_m = 0.04\nyoungs_modulus_Pa = 2.6e9\npoissons_ratio = 0.37\n'
+    text = f'[base]\n{body}density_kg_per_m3 = 1200\n[event]\nkind = "spontaneous"\n'
+    text += '[friction]\nlaw = "slip_weakening"\nmu_k = 0\nd_c_m = 1e-6\n'
+    case = write_case(text + "[sequence]\nmax_events = 2\n")
+    printed = require_done(program("validate", case, *sets(*changes))).stdout
+    assert " inf " not in printed and (told is None or told in printed)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a case asks for is foretold, and refused where it cannot be; legal cases do not blow up."""
+"""What a case asks for is predicted, and refused where it cannot be; legal cases do not blow up."""
 
 import random
 import re

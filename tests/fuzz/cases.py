@@ -5,7 +5,7 @@ Keys, types and words are those that `slipfront keys` prints. A case is small, m
 plate, some are anything within the range of their unit. Keys of which `validate` says that they do not apply
 are left out until it takes the case, or nothing is left to be left out. Of each command it is asked that it
 
-- ends with 0, or with 2 (the case) or 3 (the motion blows up) and one line, `run` within the time foretold;
+- ends with 0, or with 2 (the case) or 3 (the motion blows up) and one line, `run` within the time predicted;
 - leaves no number that is not finite where it ends with 0.
 
 Case k of `--seed s` is the first of `--seed s+k`."""
@@ -29,7 +29,7 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-#: `run` is not tried where more is foretold, and a forecast is not asked to be better than so many times.
+#: `run` is not tried where more is predicted, and a forecast is not asked to be better than so many times.
 MOST_S, MOST_BYTES, TIMES_FORETOLD, START_S = 1.0, 3e7, 20, 10
 HANG_S = 60
 SIZES = ("plate.width_m", "plate.height_m", "plate.element_size_m")
@@ -257,7 +257,7 @@ def check_array(file, name, data):
         require(np.isfinite(data[()]).all(), f"{file}: {name} has numbers that are not finite")
 
 
-def foretold(printed):
+def predicted(printed):
     """Time and disk of a run, and whether these leave something out."""
     seconds = float(re.search(r"^expected time +(\S+) s", printed, re.MULTILINE)[1])
     disk = 1e9 * float(re.search(r"^disk +(\S+) GB", printed, re.MULTILINE)[1])
@@ -275,7 +275,7 @@ def trial(program, seed, keys, magnitudes, folder):
     info = call(program, "info", file)
     if ended(info, 0, 2):
         return "refused by info"
-    seconds, disk = foretold(info.stdout)
+    seconds, disk = predicted(info.stdout)
     if seconds > MOST_S or disk > MOST_BYTES:
         return "too long to run"
     limit_s = START_S + TIMES_FORETOLD * seconds

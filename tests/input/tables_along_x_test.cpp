@@ -97,7 +97,7 @@ TEST_F(Table, ParametersWithoutAColumnKeepTheCasesValues) {
   for (const auto& l : friction_at(with_friction("x_m,alpha_m2_per_s2,mu_s\n0,0.2,1.4\n1,0.2,1.4\n"), {0, 1}))
     EXPECT_THAT(l.as<VelocityWeakening>(), testing::FieldsAre(1.4, 0.6, 0.2));
   EXPECT_TRUE(friction_at(Case{}, {0, 1}).empty());
-  EXPECT_TRUE(contact_model(Case{}, {0, 1}).of_nodes.empty());
+  EXPECT_TRUE(contact_model(Case{}, {0, 1}).law_per_node.empty());
 }
 
 TEST_F(Table, MustCoverTheInterface) {

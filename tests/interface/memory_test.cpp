@@ -117,14 +117,14 @@ TEST(Strengthening, ASteepLawComesToItsBalance) {
 
 TEST(Intact, InterpolatesBetweenTheKineticCoefficientAndTheLaw) {
   const ContactModel model{test::weakening};
-  for (const double intact : {0.0, 0.25, 1.0}) {
+  for (const double strength_fraction : {0.0, 0.25, 1.0}) {
     auto s = test::one_node();
     s.p_Pa[0] = 1e6;
-    s.intact[0] = intact;
+    s.strength_fraction[0] = strength_fraction;
     start_contact(model, s);
-    const double static_Pa = (0.6 + intact * 0.7) * 1e6;
+    const double static_Pa = (0.6 + strength_fraction * 0.7) * 1e6;
     EXPECT_NEAR(s.strength_Pa[0], static_Pa, rounding_Pa);
-    const auto mu = [&](double v) { return 0.6 + intact * (test::weakening_mu(v) - 0.6); };
+    const auto mu = [&](double v) { return 0.6 + strength_fraction * (test::weakening_mu(v) - 0.6); };
     for (int k = 0; k < 2; ++k) {
       const double rate = s.slip_rate_m_per_s[0];
       pull(model, s, 1.5e6, 1e6);
@@ -138,13 +138,13 @@ TEST(Intact, InterpolatesBetweenTheKineticCoefficientAndTheLaw) {
 
 TEST(Intact, LimitsTheCoefficientOfANodeThatIsForced) {
   const ContactModel model{SlipWeakening{.mu_s = 0.6, .mu_k = 0.3, .d_c_m = 1e-6}};
-  for (const double intact : {0.0, 0.5, 1.0}) {
+  for (const double strength_fraction : {0.0, 0.5, 1.0}) {
     auto s = test::one_node();
     s.p_Pa[0] = 1e6;
-    s.intact[0] = intact;
-    s.is_forced = true;
+    s.strength_fraction[0] = strength_fraction;
+    s.is_time_weakening = true;
     start_contact(model, s);
-    const double most_Pa = (0.3 + intact * 0.3) * 1e6;
+    const double most_Pa = (0.3 + strength_fraction * 0.3) * 1e6;
     EXPECT_NEAR(s.strength_Pa[0], most_Pa, rounding_Pa);
     for (const double slip_m : {0.2e-6, 0.8e-6}) {
       s.slip_m[0] = slip_m;

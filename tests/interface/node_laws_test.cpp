@@ -24,7 +24,7 @@ Interface alone(const Interface& s, std::size_t i) {
   one.law_states.assign(s.law_states.size(), {0.0});
   const auto take = [i](auto& to, const auto& from) { to[0] = from[i]; };
   take(one.mass_per_length_kg_m2, s.mass_per_length_kg_m2);
-  take(one.intact, s.intact);
+  take(one.strength_fraction, s.strength_fraction);
   take(one.p_Pa, s.p_Pa);
   return one;
 }
@@ -46,7 +46,7 @@ TEST(NodeLaws, EqualLawsAreTheOneLawBitByBit) {
     std::mt19937_64 random(2);
     const std::size_t n = 5 * lanes + 3;
     auto varying = one;
-    varying.of_nodes = NodeLaws(std::vector<FrictionLaw>(n, one.law));
+    varying.law_per_node = NodeLaws(std::vector<FrictionLaw>(n, one.law));
     auto a = many_nodes(n, one), b = many_nodes(n, one);
     start_contact(one, a);
     start_contact(varying, b);
@@ -69,7 +69,7 @@ TEST(NodeLaws, EachNodeFollowsItsOwn) {
     for (std::size_t n = 1; n <= 2 * lanes + 1; ++n) {
       const auto laws = random_laws(model, n, random);
       auto varying = model;
-      varying.of_nodes = NodeLaws(laws);
+      varying.law_per_node = NodeLaws(laws);
       auto together = many_nodes(n, model);
       start_contact(varying, together);
       std::vector<ContactModel> models(n, model);

@@ -68,7 +68,7 @@ bool update_one_by_one(const FrictionLaw& of, const Law& law, const Form& form, 
       f(n.initial_gap_m, s.initial_gap_m);
       f(n.mass_per_length_kg_m2, s.mass_per_length_kg_m2);
       f(n.tangential_mass_ratio, s.tangential_mass_ratio);
-      f(n.intact, s.intact);
+      f(n.strength_fraction, s.strength_fraction);
       f(n.v_x_m_per_s, s.v_x_m_per_s);
       f(n.v_y_m_per_s, s.v_y_m_per_s);
       f(n.u_y_m, s.u_y_m);
@@ -97,7 +97,7 @@ bool update_one_by_one(const FrictionLaw& of, const Law& law, const Form& form, 
 
 bool update_one_by_one(const ContactModel& model, double since_last_s, Interface& s) {
   return visit(model.law, [&]<class Law>(const Law& law) {
-    return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+    return with_regularisation(model.regularisation, since_last_s, [&](const auto& form) {
       if constexpr (!HasState<Law>)
         if (model.algorithm == ContactAlgorithm::predictor_corrector)
           return update_one_by_one<ContactAlgorithm::predictor_corrector, false>(model.law, law, form, s);

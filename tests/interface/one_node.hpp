@@ -108,7 +108,7 @@ inline Interface many_nodes(std::size_t n, const ContactModel& model) {
   Interface s(n, model.law.states());
   for (std::size_t i = 0; i < n; ++i) {
     s.mass_per_length_kg_m2[i] = mass * (1 + 0.01 * static_cast<double>(i));
-    s.intact[i] = i % 7 == 0 ? 0.5 : 1;
+    s.strength_fraction[i] = i % 7 == 0 ? 0.5 : 1;
     s.p_Pa[i] = i % 9 == 0 ? 0 : 0.5e6;
   }
   return s;

@@ -133,7 +133,7 @@ TEST(Regularisation, AWeakenedPatchLosesItsStrengthAtTheFormsOwnPace) {
   for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure}) {
     const ContactModel model{weakening, {.relaxed = relaxed, .time_s = dt}};
     auto s = resting_node(model, 1e6);
-    s.intact[0] = 0;
+    s.strength_fraction[0] = 0;
     for (int k = 0; k < 2; ++k) {  // the first at time 0
       pull(model, s, 0.5e6, 1e6);
     }

@@ -141,10 +141,10 @@ Outcome outcome_of(const std::vector<record::Onset>& onsets, const std::vector<f
   result.event.record.onsets = onsets;
   result.fronts = fronts;
   run::InitialState initial;
-  initial.common.tractions = state;
-  initial.common.peak_x_m = peak_x_m;
-  initial.common.inside_from_m = contact_from_m + 10e-3;
-  initial.common.inside_to_m = contact_to_m - 10e-3;
+  initial.subcritical.tractions = state;
+  initial.subcritical.peak_x_m = peak_x_m;
+  initial.subcritical.inside_from_m = contact_from_m + 10e-3;
+  initial.subcritical.inside_to_m = contact_to_m - 10e-3;
   initial.critical_shear_m = 0.47e-3;
   return make_outcome("run", result, initial);
 }

@@ -155,11 +155,11 @@ void expect_columns(const Plate& plate, const Subset& held) {
   expect_some(part.pushed_nodes, whole.pushed_nodes);
   using Grip = std::optional<double>;
   std::vector<std::tuple<Node, double, double, Grip, Grip>> absorbing, expected_absorbing;
-  for (const auto& a : part.absorbing)
-    absorbing.emplace_back(in_whole(a.node), a.side_m, a.top_m, a.grip_x_N_per_m, a.grip_y_N_per_m);
-  for (const auto& a : whole.absorbing)
+  for (const auto& a : part.boundary)
+    absorbing.emplace_back(in_whole(a.node), a.side_m, a.top_m, a.spring_x_N_per_m, a.spring_y_N_per_m);
+  for (const auto& a : whole.boundary)
     if (is_held(a.node))
-      expected_absorbing.emplace_back(a.node, a.side_m, a.top_m, a.grip_x_N_per_m, a.grip_y_N_per_m);
+      expected_absorbing.emplace_back(a.node, a.side_m, a.top_m, a.spring_x_N_per_m, a.spring_y_N_per_m);
   EXPECT_EQ(absorbing, expected_absorbing);
   const bool has_both_sides = held.has(0) && held.has(of_whole.n_columns() - 1);
   EXPECT_EQ(part.period_m, has_both_sides ? whole.period_m : 0);

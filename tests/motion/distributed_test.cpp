@@ -350,7 +350,7 @@ TEST(Subdomains, DoNotGoOnWithAnotherState) {
   wide.plate.width_m = 0.21;
   const Bodies bodies(narrow), others(wide);
   auto loads = begin_of(narrow, bodies).loads, other_loads = begin_of(wide, others).loads;
-  for (auto* of : {&loads, &other_loads}) of->intact.clear();
+  for (auto* of : {&loads, &other_loads}) of->strength_fraction.clear();
   Stepper stepper(bodies.sources(), narrow.contact, narrow.time, {});
   Stepper other(others.sources(), wide.contact, wide.time, {});
   stepper.start(begin_of(narrow, bodies).state, 0, loads);

@@ -69,7 +69,7 @@ TEST_P(Books, CloseWithEverythingOn) {
     EXPECT_GT(b.n_onsets, 5);
     // Every term is there to be missed.
     EXPECT_GT(b.last.kinetic, 1e-6 * b.largest_J);
-    EXPECT_GT(std::abs(b.last.top_work), 1e-6 * b.largest_J);
+    EXPECT_GT(std::abs(b.last.far_edge_work), 1e-6 * b.largest_J);
     EXPECT_GT(b.last.trigger_work, 1e-6 * b.largest_J);
     EXPECT_LT(b.last.friction_work, -1e-6 * b.largest_J);
     EXPECT_LT(b.last.damping_work, -1e-6 * b.largest_J);

@@ -69,7 +69,7 @@ TEST_P(AMachine, GivesThePlateTheWorkThatIsLeft) {
   }
   EXPECT_GT(recorder.record_until(stepper.time_s()).onsets.size(), 5);
   EXPECT_GT(std::abs(balance.last.machine), 1e-6 * balance.largest_J);
-  EXPECT_GT(std::abs(balance.last.top_work), 1e-6 * balance.largest_J);
+  EXPECT_GT(std::abs(balance.last.far_edge_work), 1e-6 * balance.largest_J);
   EXPECT_LE(balance.worst_J, 1e-12 * balance.largest_J);
 }
 

@@ -86,7 +86,7 @@ inline Begin begin_of(const Problem& problem, const Bodies& bodies) {
       problem.halo, statics::prestressed(bodies.above, tractions), {tractions.t_s_Pa, tractions.p_s_Pa}};
   if (bodies.below)
     begin.state.below_u_m = begin.state.below_u_per_shear = solid::Field(bodies.below->n_nodes());
-  begin.loads.intact.assign(n, 1.0);
+  begin.loads.strength_fraction.assign(n, 1.0);
   if (problem.is_strained) {
     begin.state.u_m = begin.state.u_per_shear = solid::Field(bodies.above.n_nodes());
     for (mesh::Node k = 0; k < bodies.above.n_nodes(); ++k) {
@@ -95,7 +95,7 @@ inline Begin begin_of(const Problem& problem, const Bodies& bodies) {
     }
   }
   const auto middle = static_cast<std::size_t>(problem.patch * static_cast<double>(n));
-  for (std::size_t i = middle - 6; i < middle + 6; ++i) begin.loads.intact[i % n] = 0;
+  for (std::size_t i = middle - 6; i < middle + 6; ++i) begin.loads.strength_fraction[i % n] = 0;
   return begin;
 }
 

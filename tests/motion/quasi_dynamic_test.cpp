@@ -122,7 +122,7 @@ TEST(QuasiDynamicSlip, ContactOpensAndCloses) {
   const std::size_t n = tributary_m.size();
   const interface::QuasiDynamicFriction friction({law}, n, damping);
   const auto plate = solid::make_operator(mesh, {});
-  const auto run = [&](double speed_m_per_s, const SlowSlip* from) {
+  const auto run = [&](double speed_m_per_s, const QuasiDynamicState* from) {
     QuasiDynamicSlip slip(statics, friction, tributary_m, speed_m_per_s);
     if (from == nullptr)
       slip.start(0, 0, statics.tilted().contact, std::vector<double>(n), friction.initial_states());
@@ -139,7 +139,9 @@ TEST(QuasiDynamicSlip, ContactOpensAndCloses) {
                 strain() - before, 1e-9 * std::abs(w.of_load_J_per_m));
     return slip.state();
   };
-  const auto n_open = [](const SlowSlip& s) { return std::ranges::count(s.contact, statics::Contact::open); };
+  const auto n_open = [](const QuasiDynamicState& s) {
+    return std::ranges::count(s.contact, statics::Contact::open);
+  };
   const auto pushed = run(edge_speed_m_per_s, nullptr);
   EXPECT_GT(n_open(pushed), 0);
   for (std::size_t k = 0; k < n; ++k) {

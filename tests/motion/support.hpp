@@ -127,8 +127,8 @@ struct Balance {
   void look(const record::Energies& now) {
     last = now;
     worst_J = std::max(worst_J, std::abs(record::imbalance_J_per_m(now, start)));
-    for (const double term :
-         {now.kinetic, now.strain, now.top_work, now.trigger_work, now.prestress_work, now.friction_work})
+    for (const double term : {now.kinetic, now.strain, now.far_edge_work, now.trigger_work,
+                              now.prestress_work, now.friction_work})
       largest_J = std::max(largest_J, std::abs(term));
   }
 };

@@ -56,8 +56,8 @@ class Rupture {
     state.below_u_m = state.below_u_per_shear = solid::Field(mesh_below_.n_nodes());
     Loads loads{tractions.t_s_Pa, tractions.p_s_Pa};
     loads.light_Pa = light_Pa;
-    loads.intact.assign(n, 1.0);
-    for (std::size_t i = n / 3; i < n / 2; ++i) loads.intact[i] = 0;
+    loads.strength_fraction.assign(n, 1.0);
+    for (std::size_t i = n / 3; i < n / 2; ++i) loads.strength_fraction[i] = 0;
     stepper_->start(state, 0, loads);
     recorder_ = std::make_unique<Recorder>(state, mu_s, 0);
   }

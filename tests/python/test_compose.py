@@ -211,7 +211,7 @@ def test_threads_and_calls_do_not_change_the_motion():
         (lambda: stepper().start([1, 2], 1e6), "t_Pa has 2 values; give a number, or one for each of 21"),
         (lambda: stepper().start(np.nan, 1e6), "t_Pa holds a value that is not finite"),
         (lambda: stepper().start(0, 0), "p_Pa must be above 0"),
-        (lambda: stepper().start(0, 1e6, intact=2), "intact must be between 0 and 1"),
+        (lambda: stepper().start(0, 1e6, strength_fraction=2), "strength_fraction must be between 0 and 1"),
         (lambda: stepper().start_from_statics(method="ramp"), "loading.method must be direct here"),
         (lambda: stepper().start_from_statics(tilt_left_m=1), "loading.tilt_left_m"),
     ],

@@ -590,7 +590,7 @@ def test_no_arrest_is_foretold_where_statics_do_not_tell_it(changes, doubt):
     found = slipfront.predict_fronts(CASE, changes, fracture_energy_J_per_m2=TOUGH_ENDS).attrs
     assert found["arrests"] == [-1, 1]
     assert [doubt in told for told in found["doubts_of_arrest"]] == ([] if doubt is None else [True])
-    assert any(note.startswith("no arrest is foretold") for note in found["notes"]) == (doubt is not None)
+    assert any(note.startswith("no arrest is predicted") for note in found["notes"]) == (doubt is not None)
 
 
 def test_the_program_says_so(tmp_path):
@@ -601,7 +601,7 @@ def test_the_program_says_so(tmp_path):
         said = require_done(
             program(command, "case.toml", "--set", "friction.file=mu_s.csv", cwd=tmp_path)
         ).stdout
-        assert "arrests at" not in said and "no arrest is foretold" in said
+        assert "arrests at" not in said and "no arrest is predicted" in said
 
 
 #: A strip: G is the same all along.

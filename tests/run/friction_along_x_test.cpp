@@ -116,16 +116,16 @@ TEST(FrictionAlongX, ARampEndsWhereTheStrengthIsReachedFirst) {
   constexpr double weak = 0.2;
   test::set_table(c, fmt::format("x_m,mu_s\n0,1.3\n0.055,1.3\n0.06,{}\n0.065,1.3\n0.2,1.3\n", weak));
   const auto direct = make_initial_state(c, go_on);
-  EXPECT_NEAR(direct.common.peak_x_m, 0.06, 1e-9);
-  EXPECT_NEAR(direct.common.peak_ratio, weak * (1 - c.loading.critical_margin), 1e-6);
+  EXPECT_NEAR(direct.subcritical.peak_x_m, 0.06, 1e-9);
+  EXPECT_NEAR(direct.subcritical.peak_ratio, weak * (1 - c.loading.critical_margin), 1e-6);
   c.loading.method = statics::LoadingMethod::ramp;
   const auto ramp = make_initial_state(c, go_on);
-  EXPECT_EQ(ramp.common.peak_x_m, direct.common.peak_x_m);
-  EXPECT_EQ(ramp.spontaneous.peak_x_m, direct.common.peak_x_m);
+  EXPECT_EQ(ramp.subcritical.peak_x_m, direct.subcritical.peak_x_m);
+  EXPECT_EQ(ramp.supercritical.peak_x_m, direct.subcritical.peak_x_m);
   // Waves that go to and fro in the plate make the explicit state wobble.
-  EXPECT_NEAR(ramp.spontaneous.shear_m, direct.critical_shear_m, 0.005 * direct.critical_shear_m);
-  EXPECT_GE(ramp.common.peak_ratio, (1 - c.loading.critical_margin) * weak);
-  EXPECT_LT(ramp.common.peak_ratio, weak);
+  EXPECT_NEAR(ramp.supercritical.shear_m, direct.critical_shear_m, 0.005 * direct.critical_shear_m);
+  EXPECT_GE(ramp.subcritical.peak_ratio, (1 - c.loading.critical_margin) * weak);
+  EXPECT_LT(ramp.subcritical.peak_ratio, weak);
   // In its last step the node has begun to slip, and weakens from mu_s.
   ASSERT_EQ(ramp.ramp->n_onsets_inside(), 1);
   const auto& record = ramp.ramp->record;

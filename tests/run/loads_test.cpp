@@ -130,9 +130,9 @@ TEST(Loads, TheInterfaceBearsTheForcesThatAreAsked) {
     EXPECT_EQ(n_open > 0, row.opens);
 
     const double sheared = 0.9 * loads.critical_shear_force_N_per_m;
-    EXPECT_NEAR(sum(initial.common.tractions.t_s_Pa, initial.tributary_m), sheared, 1e-9 * sheared);
+    EXPECT_NEAR(sum(initial.subcritical.tractions.t_s_Pa, initial.tributary_m), sheared, 1e-9 * sheared);
     EXPECT_NEAR(loads.shear_force_N_per_m, sheared, 1e-9 * sheared);
-    EXPECT_EQ(loads.shear_m, initial.common.shear_m);
+    EXPECT_EQ(loads.shear_m, initial.subcritical.shear_m);
     EXPECT_EQ(loads.critical_shear_m, initial.critical_shear_m);
     EXPECT_LT(loads.shear_m, loads.critical_shear_m);
   }
@@ -148,7 +148,7 @@ TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
     forces.loading.mean_pressure_Pa = forces.loading.shear_over_critical = {};
     forces.loading.normal_force_N_per_m = loads.normal_force_N_per_m;
     forces.loading.shear_force_N_per_m = loads.shear_force_N_per_m;
-    expect_same_state(make_initial_state(forces, go_on).common, expected.common, row.tolerance);
+    expect_same_state(make_initial_state(forces, go_on).subcritical, expected.subcritical, row.tolerance);
     // By the displacements that were found.
     auto displaced = forces;
     displaced.loading.normal_force_N_per_m = {};
@@ -156,7 +156,7 @@ TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
     displaced.loading.tilt_right_m = loads.tilt_right_m;
     expect_same_state(compressed(displaced, expected), compressed(c, expected), row.tolerance);
     const auto by_displacements = make_initial_state(displaced, go_on);
-    expect_same_state(by_displacements.common, expected.common, row.tolerance);
+    expect_same_state(by_displacements.subcritical, expected.subcritical, row.tolerance);
     EXPECT_NEAR(by_displacements.critical_shear_m, expected.critical_shear_m,
                 row.tolerance * expected.critical_shear_m);
   }
@@ -169,7 +169,7 @@ TEST(Loads, SolversFindTheSame) {
     auto c = case_of(row);
     const auto iterative = make_initial_state(c, go_on);
     c.loading.solver = statics::StaticSolver::direct;
-    expect_same_state(iterative.common, make_initial_state(c, go_on).common, row.tolerance);
+    expect_same_state(iterative.subcritical, make_initial_state(c, go_on).subcritical, row.tolerance);
   }
 }
 
@@ -177,14 +177,14 @@ TEST(Loads, TheWholeCriticalOneIsThatOfTheMargin) {
   auto c = case_of(loads_of_rows[2]);
   c.loading.shear_over_critical = 1;
   const auto whole = make_initial_state(c, go_on);
-  EXPECT_NEAR(whole.common.shear_m, whole.critical_shear_m, 1e-9 * whole.critical_shear_m);
-  EXPECT_NEAR(whole.common.peak_ratio, test::law(c).mu_s, 1e-9);
+  EXPECT_NEAR(whole.subcritical.shear_m, whole.critical_shear_m, 1e-9 * whole.critical_shear_m);
+  EXPECT_NEAR(whole.subcritical.peak_ratio, test::law(c).mu_s, 1e-9);
   // t/p at the peak grows with the shear up to it.
   c.loading.shear_over_critical = {};
   const auto below = make_initial_state(c, go_on);
   EXPECT_EQ(below.critical_shear_m, whole.critical_shear_m);
-  EXPECT_NEAR(below.common.peak_ratio, (1 - c.loading.critical_margin) * test::law(c).mu_s, 1e-9);
-  EXPECT_LT(below.common.shear_m, whole.common.shear_m);
+  EXPECT_NEAR(below.subcritical.peak_ratio, (1 - c.loading.critical_margin) * test::law(c).mu_s, 1e-9);
+  EXPECT_LT(below.subcritical.shear_m, whole.subcritical.shear_m);
 }
 
 TEST(Loads, LevelCompressionOfAColumnIsUniform) {
@@ -216,7 +216,7 @@ TEST(Loads, ARampBeginsUnderTheForce) {
   const auto initial = make_initial_state(c, go_on);
   ASSERT_TRUE(initial.loads && initial.ramp);
   EXPECT_NEAR(initial.loads->mean_pressure_Pa, p_Pa, 1e-9 * p_Pa);
-  EXPECT_EQ(initial.loads->shear_m, initial.common.shear_m);
+  EXPECT_EQ(initial.loads->shear_m, initial.subcritical.shear_m);
 }
 
 TEST(Loads, AreThoseOfInfoAndOfNoOtherCase) {

@@ -35,7 +35,7 @@ input::Case pushed_block(int max_events) {
 }
 
 void run_all(Sequence& sequence, const input::Case& config) {
-  while (sequence.end().empty()) sequence.take(run_from(config, *sequence.next(), test::go_on));
+  while (sequence.end().empty()) sequence.record_event(run_from(config, *sequence.next(), test::go_on));
 }
 
 double largest_term(const std::vector<record::LoadingRow>& rows) {

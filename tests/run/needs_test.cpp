@@ -81,8 +81,8 @@ TEST(Needs, CountTheStepsOfTheRamp) {
   EXPECT_EQ(needs_of(config).ramp_steps, 0);
   config.loading.method = statics::LoadingMethod::ramp;
   config.loading.shear_speed_over_c_L = 3e-6;
-  const auto foretold = static_cast<double>(info(config).needs.ramp_steps);
-  EXPECT_NEAR(foretold / static_cast<double>(make_initial_state(config, go_on).ramp->steps), 1, 0.3);
+  const auto predicted = static_cast<double>(info(config).needs.ramp_steps);
+  EXPECT_NEAR(predicted / static_cast<double>(make_initial_state(config, go_on).ramp->steps), 1, 0.3);
 }
 
 TEST(Needs, RefuseStepsBeyondCounting) {

@@ -146,7 +146,7 @@ TEST(PrestressColumn, TwoOfTractionSlipRateAndStateGiveTheThird) {
   c.prestress.p_Pa = 5e6;
   const auto t_s = [&] {
     c.friction = law;
-    return make_initial_state(c, go_on).common.tractions.t_s_Pa.front();
+    return make_initial_state(c, go_on).subcritical.tractions.t_s_Pa.front();
   };
   EXPECT_DOUBLE_EQ(t_s(), 5e6 * (0.6 - 0.008 * std::log(1e-3)));  // steady sliding at 1e-9 m/s
   // Problem R-A: theta_i = 0.159228803985 s at 1e-9 m/s is tau = 2.65 MPa.
@@ -356,9 +356,9 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
   const auto key = initial_state_key(c);
   const auto state = make_initial_state(c, go_on);
   EXPECT_TRUE(state.prescribed);
-  EXPECT_DOUBLE_EQ(state.common.tractions.t_s_Pa[1], 1.5e5);
-  EXPECT_DOUBLE_EQ(state.common.tractions.p_s_Pa[3], 1.75e6);
-  EXPECT_DOUBLE_EQ(state.common.peak_ratio, 0.15);
+  EXPECT_DOUBLE_EQ(state.subcritical.tractions.t_s_Pa[1], 1.5e5);
+  EXPECT_DOUBLE_EQ(state.subcritical.tractions.p_s_Pa[3], 1.75e6);
+  EXPECT_DOUBLE_EQ(state.subcritical.peak_ratio, 0.15);
   c.prestress.file.clear();
   c.prestress.t_Pa = 0;
   EXPECT_NE(initial_state_key(c), key);

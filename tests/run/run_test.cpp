@@ -91,14 +91,14 @@ TEST(InitialState, IsAtItsRatioOrRefused) {
     config.loading.critical_margin = margin;
     try {
       const auto initial = make_initial_state(config, go_on);
-      EXPECT_NEAR(initial.common.peak_ratio, (1 - margin) * mu_s, mu_s * solve_error);
-      EXPECT_NEAR(initial.spontaneous.peak_ratio, (1 + margin) * mu_s, mu_s * solve_error);
-      EXPECT_LT(initial.common.shear_m, initial.spontaneous.shear_m);
+      EXPECT_NEAR(initial.subcritical.peak_ratio, (1 - margin) * mu_s, mu_s * solve_error);
+      EXPECT_NEAR(initial.supercritical.peak_ratio, (1 + margin) * mu_s, mu_s * solve_error);
+      EXPECT_LT(initial.subcritical.shear_m, initial.supercritical.shear_m);
       if (mu_s == 1.3) {
-        EXPECT_DOUBLE_EQ(largest_ratio(initial.common), initial.common.peak_ratio);
-        EXPECT_DOUBLE_EQ(largest_ratio(initial.spontaneous), initial.spontaneous.peak_ratio);
-        EXPECT_LT(initial.common.shear_m, initial.critical_shear_m);
-        EXPECT_GT(initial.spontaneous.shear_m, initial.critical_shear_m);
+        EXPECT_DOUBLE_EQ(largest_ratio(initial.subcritical), initial.subcritical.peak_ratio);
+        EXPECT_DOUBLE_EQ(largest_ratio(initial.supercritical), initial.supercritical.peak_ratio);
+        EXPECT_LT(initial.subcritical.shear_m, initial.critical_shear_m);
+        EXPECT_GT(initial.supercritical.shear_m, initial.critical_shear_m);
         EXPECT_EQ(initial.critical_shear_m, coarse_state().critical_shear_m);
       }
       ++reached;
@@ -184,9 +184,9 @@ TEST(InitialStateKey, EqualKeysMeanEqualStates) {
   law(config).mu_k = 1.0;
   ASSERT_EQ(initial_state_key(config), initial_state_key(coarse_case()));
   const auto other = make_initial_state(config, go_on);
-  EXPECT_TRUE(same_bits(other.common.u_m, coarse_state().common.u_m));
-  EXPECT_TRUE(same_bits(other.spontaneous.u_m, coarse_state().spontaneous.u_m));
-  EXPECT_TRUE(same_bits(other.common.tractions.t_s_Pa, coarse_state().common.tractions.t_s_Pa));
+  EXPECT_TRUE(same_bits(other.subcritical.u_m, coarse_state().subcritical.u_m));
+  EXPECT_TRUE(same_bits(other.supercritical.u_m, coarse_state().supercritical.u_m));
+  EXPECT_TRUE(same_bits(other.subcritical.tractions.t_s_Pa, coarse_state().subcritical.tractions.t_s_Pa));
   EXPECT_EQ(other.critical_shear_m, coarse_state().critical_shear_m);
 }
 
@@ -195,7 +195,7 @@ TEST(Event, SpontaneousFrontsRunBothWaysFromThePeak) {
   const auto initial = make_initial_state(config, go_on);
   const auto result = run_from(config, initial, go_on);
   ASSERT_FALSE(result.event.record.onsets.empty());
-  const auto& state = initial.spontaneous;
+  const auto& state = initial.supercritical;
   for (const int direction : {-1, 1}) {
     const auto* front = longest(result.fronts, direction);
     ASSERT_NE(front, nullptr) << direction;
@@ -215,7 +215,7 @@ TEST(Event, TriggersStartAFrontAtTheirEdge) {
     SCOPED_TRACE(event == EventKind::left ? "left" : "right");
     const auto config = coarse_case(event);
     const auto result = run(config);
-    const auto& common = coarse_state().common;
+    const auto& common = coarse_state().subcritical;
     const int inward = event == EventKind::left ? 1 : -1;
     const double edge_m = event == EventKind::left ? common.inside_from_m - config.loading.edge_margin_m
                                                    : common.inside_to_m + config.loading.edge_margin_m;
@@ -243,7 +243,8 @@ TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
   // A node near an edge may stand at mu_s and creep with the loaded edge.
   for (const auto& onset : result.event.record.onsets) {
     const double x = result.event.record.x_m[onset.node];
-    EXPECT_TRUE(x < coarse_state().common.inside_from_m || x > coarse_state().common.inside_to_m) << x;
+    EXPECT_TRUE(x < coarse_state().subcritical.inside_from_m || x > coarse_state().subcritical.inside_to_m)
+        << x;
   }
   EXPECT_TRUE(result.fronts.empty());
 }
@@ -272,7 +273,7 @@ TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
     EXPECT_TRUE(k + 1 == energies.size() ||
                 (e.time_s >= asked_s * (1 - 1e-12) && e.time_s < asked_s + result.step_s))
         << e.time_s;
-    for (const double term : {e.strain, e.kinetic, e.top_work, e.trigger_work, e.friction_work})
+    for (const double term : {e.strain, e.kinetic, e.far_edge_work, e.trigger_work, e.friction_work})
       largest = std::max(largest, std::abs(term));
     worst = std::max(worst, std::abs(record::imbalance_J_per_m(e, energies.front())));
   }
@@ -289,9 +290,9 @@ TEST(FrontOptions, KnowTheTriggerZone) {
     const auto options = front_options(config, initial);
     EXPECT_EQ(options.driven.size(), n == 0 ? 0U : 1U);
     const auto forces =
-        motion::trigger_forces(initial.common, initial.tributary_m, kind, config.trigger, 1.3);
+        motion::trigger_forces(initial.subcritical, initial.tributary_m, kind, config.trigger, 1.3);
     for (std::size_t k = 0; k < forces.size(); ++k)
-      EXPECT_EQ(fronts::is_driven(options, initial.common.tractions.x_m[k]), forces[k] != 0) << k;
+      EXPECT_EQ(fronts::is_driven(options, initial.subcritical.tractions.x_m[k]), forces[k] != 0) << k;
     EXPECT_EQ(std::ranges::count_if(forces, [](double force) { return force != 0; }), n);
   }
 }
@@ -359,19 +360,20 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   EXPECT_GT(asked, 0);
   EXPECT_GT(initial.ramp->steps, 10000);
   // 0.5 % is the agreement asked for between the two ways.
-  EXPECT_NEAR(initial.ramp->spontaneous.shear_m, initial.critical_shear_m, 0.005 * initial.critical_shear_m);
-  EXPECT_GE(initial.common.peak_ratio, (1 - 1e-3) * 1.3);
-  EXPECT_LT(initial.common.peak_ratio, 1.3);
-  EXPECT_GE(initial.spontaneous.peak_ratio, (1 - motion::ramp_handover) * 1.3);
+  EXPECT_NEAR(initial.ramp->supercritical.shear_m, initial.critical_shear_m,
+              0.005 * initial.critical_shear_m);
+  EXPECT_GE(initial.subcritical.peak_ratio, (1 - 1e-3) * 1.3);
+  EXPECT_LT(initial.subcritical.peak_ratio, 1.3);
+  EXPECT_GE(initial.supercritical.peak_ratio, (1 - motion::ramp_handover) * 1.3);
 
   const auto result = run_from(config, initial, go_on);
   const auto direct = make_initial_state(coarse_case(EventKind::spontaneous, 5e-3), go_on);
   EXPECT_EQ(direct.critical_shear_m, initial.critical_shear_m);
-  EXPECT_EQ(direct.common.peak_x_m, initial.common.peak_x_m);
+  EXPECT_EQ(direct.subcritical.peak_x_m, initial.subcritical.peak_x_m);
   for (const int direction : {-1, 1}) {
     const auto* front = longest(result.fronts, direction);
     ASSERT_NE(front, nullptr);
-    EXPECT_NEAR(front->points.front().x_m, initial.common.peak_x_m, 5e-3 * (1 + 1e-9));
+    EXPECT_NEAR(front->points.front().x_m, initial.subcritical.peak_x_m, 5e-3 * (1 + 1e-9));
   }
 }
 

@@ -66,7 +66,7 @@ input::Case rate_and_state_case(int max_events) {
 /// Computes the next event. @return the state in which it began
 const InitialState* run_next(Sequence& sequence, const input::Case& config) {
   const auto* initial = sequence.next();
-  if (initial != nullptr) sequence.take(run_from(config, *initial, test::go_on));
+  if (initial != nullptr) sequence.record_event(run_from(config, *initial, test::go_on));
   return initial;
 }
 
@@ -103,7 +103,7 @@ TEST(Sequence, EquilibriumCarriesTheTractionsWithWhichADampedEventComesToRest) {
     Sequence sequence(config, test::go_on);
     const auto* initial = sequence.next();
     const auto result = run_from(config, *initial, test::go_on);
-    sequence.take(result);
+    sequence.record_event(result);
     const auto& ends = sequence.loading()[2];
     const auto& rests = sequence.loading()[3];
     const double off = std::abs(ends.shear_force_N_per_m / rests.shear_force_N_per_m - 1);
@@ -119,13 +119,13 @@ TEST(Sequence, EventsBeginWhereInsideOneNodeReachesTheStrengthAndTheOthersStick)
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
     ASSERT_NE(initial, nullptr);
-    const auto& state = initial->spontaneous;
+    const auto& state = initial->supercritical;
     EXPECT_NEAR(state.peak_ratio, 1.3 * 1.001, 1e-6);
     for (std::size_t k = 0; k < state.contact.size(); ++k) {
       if (!state.is_inside(state.tractions.x_m[k])) continue;
       EXPECT_EQ(state.contact[k], statics::Contact::stick) << k;
     }
-    sequence.take(run_from(config, *initial, test::go_on));
+    sequence.record_event(run_from(config, *initial, test::go_on));
   }
 }
 
@@ -163,7 +163,7 @@ TEST(Sequence, RowsOfEventsTellWhatSlipped) {
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
     const auto result = run_from(config, *initial, test::go_on);
-    sequence.take(result);
+    sequence.record_event(result);
     const auto& e = sequence.events().back();
     const auto& before = sequence.loading().end()[-3];
     const auto& after = sequence.loading().back();
@@ -179,7 +179,7 @@ TEST(Sequence, RowsOfEventsTellWhatSlipped) {
     EXPECT_NEAR(e.length_m, length_m, 1e-12 * length_m);
     EXPECT_EQ(e.from_x_m, result.event.record.x_m[*nodes.begin()]);
     EXPECT_EQ(e.to_x_m, result.event.record.x_m[*nodes.rbegin()]);
-    EXPECT_TRUE(initial->common.is_inside(e.begin_x_m));
+    EXPECT_TRUE(initial->subcritical.is_inside(e.begin_x_m));
     EXPECT_EQ(e.friction_before, before.shear_force_N_per_m / before.normal_force_N_per_m);
     EXPECT_EQ(e.friction_after, after.shear_force_N_per_m / after.normal_force_N_per_m);
     EXPECT_NEAR(e.begin_s, e.shear_m / top_speed_m_per_s(config), 1e-12 * e.begin_s);
@@ -200,7 +200,7 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
     auto with_fields = config;
     with_fields.output.snapshot_times_s = {1e-5, 3e-5};
     const auto result = run_from(with_fields, *initial, test::go_on);
-    sequence.take(result);
+    sequence.record_event(result);
     ASSERT_FALSE(result.event.snapshots.empty());
     for (const auto& snapshot : result.event.snapshots) {
       for (const auto n : initial->mesh.pushed_nodes) EXPECT_EQ(snapshot.v_m_per_s.x[n], 0);
@@ -249,9 +249,9 @@ TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
     const auto result = run_from(config, *initial, test::go_on);
-    sequence.take(result);
+    sequence.record_event(result);
     const auto& slip_m = result.event.last_row.slip_m;
-    const auto& t_Pa = initial->common.tractions.t_s_Pa;
+    const auto& t_Pa = initial->subcritical.tractions.t_s_Pa;
     const double most_m = *std::ranges::max_element(slip_m), most_Pa = *std::ranges::max_element(t_Pa);
     // Rounding grows some hundredfold from event to event.
     for (std::size_t k = 0, other = slip_m.size() - 1; k < slip_m.size(); ++k, --other) {
@@ -272,8 +272,8 @@ TEST(Sequence, GoesOnUnderAStrengthThatLeavesNodesBeyondMuS) {
     const double at_rest_m = sequence.loading().back().shear_m;
     const auto* initial = run_next(sequence, config);
     ASSERT_NE(initial, nullptr);
-    EXPECT_GE(initial->spontaneous.peak_ratio, 1.3 * 1.001 * (1 - 1e-6));
-    if (initial->spontaneous.shear_m == at_rest_m) ++n_at_rest;
+    EXPECT_GE(initial->supercritical.peak_ratio, 1.3 * 1.001 * (1 - 1e-6));
+    if (initial->supercritical.shear_m == at_rest_m) ++n_at_rest;
   }
   EXPECT_GT(n_at_rest, 0);
 }
@@ -581,14 +581,14 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
     const auto* initial = sequence.next();
     const double now_s = initial->critical_shear_m / top_speed_m_per_s(config);
     const auto& of_event = sequence.config_of_event();
-    const auto& x_m = initial->common.tractions.x_m;
+    const auto& x_m = initial->subcritical.tractions.x_m;
     slipped_at_s.resize(x_m.size());
     const auto laws = input::friction_at(of_event, x_m);
     double nearest = 0;
     for (std::size_t k = 0; k < x_m.size(); ++k) {
       const double grown = mu_s + 0.02 * std::log(1 + (now_s - slipped_at_s[k]) / 2);
       EXPECT_NEAR(laws[k].parameter("mu_s"), grown, 1e-8) << k;
-      const auto& s = initial->spontaneous;
+      const auto& s = initial->supercritical;
       if (s.is_inside(x_m[k]))
         nearest =
             std::max(nearest, s.tractions.t_s_Pa[k] / (s.tractions.p_s_Pa[k] * laws[k].parameter("mu_s")));
@@ -596,13 +596,14 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
     EXPECT_NEAR(nearest, 1 + config.loading.critical_margin, 1e-6);
     const auto result = run_from(of_event, *initial, test::go_on);
     const auto begun_with = of_event.friction_along_x.table.text;
-    sequence.take(result);
+    sequence.record_event(result);
     EXPECT_EQ(of_event.friction_along_x.table.text, begun_with);  // of which its row tells
     const double rests_s = sequence.loading().back().time_s;
     for (const auto& onset : result.event.record.onsets) slipped_at_s[onset.node] = rests_s;
   }
   const auto& rows = sequence.loading();
-  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-10 * rows.back().energies.top_work);
+  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())),
+            1e-10 * rows.back().energies.far_edge_work);
   // Without healing the same comes earlier.
   config.sequence.healing_per_e_fold = 0;
   Sequence strong_at_once(config, test::go_on);
@@ -665,7 +666,7 @@ TEST(Sequence, InAHoldTheForceRelaxesUnderALawWithAState) {
   EXPECT_GT(rows.back().time_s, hold_from_s + hold_s);
   EXPECT_GT(rows.back().shear_over_normal, first.shear_over_normal + 1e-4);  // the aged surfaces are stronger
   double largest = 0;
-  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.top_work));
+  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.far_edge_work));
   EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-10 * largest);
 }
 
@@ -696,12 +697,12 @@ TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
       fastest = std::max(fastest, history.slip_rate_m_per_s[k]);
     }
     EXPECT_NEAR(fastest / begins.fastest_slip_rate_m_per_s, 1, 0.1);
-    sequence.take(result);
+    sequence.record_event(result);
   }
   const auto& rows = sequence.loading();
-  EXPECT_GT(std::ranges::count(rows, LoadingPhase::creeps, &LoadingRow::phase), 20);
+  EXPECT_GT(std::ranges::count(rows, LoadingPhase::creep, &LoadingRow::phase), 20);
   double largest = 0;
-  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.top_work));
+  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.far_edge_work));
   for (const auto& row : rows) {
     EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), 1e-10 * largest);
     EXPECT_NEAR(row.time_s, row.shear_m / top_speed_m_per_s(config), 1e-9 * row.time_s);

@@ -278,7 +278,7 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
 TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   auto kept = Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {});
   ASSERT_TRUE(kept);
-  const InitialState whole = read_initial_state(kept->rest, config_);
+  const InitialState whole = read_initial_state(kept->body, config_);
   const auto keep = [&](auto... parts) {
     Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](results::OutputArchive& archive) {
       archive(parts...);
@@ -289,15 +289,15 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
       {"a plate", [](InitialState& s) { s.tributary_m.pop_back(); }},
       {"a plate", [](InitialState& s) { ++s.n_nodes; }},
       {"a plate", [](InitialState& s) { s.mu_s.push_back(1); }},
-      {"an initial state", [](InitialState& s) { s.common.contact.pop_back(); }},
-      {"an initial state", [](InitialState& s) { s.common.contact[1] = statics::Contact{7}; }},
-      {"an initial state", [](InitialState& s) { s.common.tractions.x_m[1] *= 1.01; }},
-      {"an initial state", [](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); }},
-      {"an initial state", [](InitialState& s) { s.spontaneous.tractions.t_s_Pa[1] = nan; }},
-      {"an initial state", [](InitialState& s) { s.spontaneous.u_m.x.push_back(0); }},
+      {"an initial state", [](InitialState& s) { s.subcritical.contact.pop_back(); }},
+      {"an initial state", [](InitialState& s) { s.subcritical.contact[1] = statics::Contact{7}; }},
+      {"an initial state", [](InitialState& s) { s.subcritical.tractions.x_m[1] *= 1.01; }},
+      {"an initial state", [](InitialState& s) { s.supercritical.tractions.p_s_Pa.pop_back(); }},
+      {"an initial state", [](InitialState& s) { s.supercritical.tractions.t_s_Pa[1] = nan; }},
+      {"an initial state", [](InitialState& s) { s.supercritical.u_m.x.push_back(0); }},
       {"an initial state", [](InitialState& s) { s.critical_shear_m = nan; }},
       {"an initial state", [](InitialState& s) {
-         s.ramp.emplace(motion::Ramp{s.common, s.spontaneous, {}, 0, false});
+         s.ramp.emplace(motion::Ramp{s.subcritical, s.supercritical, {}, 0, false});
        }}};
   for (const auto& [what, change] : changes) {
     InitialState initial = whole;

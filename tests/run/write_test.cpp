@@ -96,9 +96,9 @@ TEST_F(WrittenRun, TablesHoldWhatWasComputed) {
   ASSERT_GT(energies.size(), 3U);
   std::vector<std::vector<double>> rows;
   for (const auto& e : energies)
-    rows.push_back({e.time_s, e.strain, e.kinetic, e.machine, e.top_work, e.trigger_work, e.prestress_work,
-                    e.friction_work, e.contact_work, e.damping_work, e.boundary_work, e.coupling_work,
-                    e.stored() - energies[0].stored() - e.work()});
+    rows.push_back({e.time_s, e.strain, e.kinetic, e.machine, e.far_edge_work, e.trigger_work,
+                    e.prestress_work, e.friction_work, e.contact_work, e.damping_work, e.boundary_work,
+                    e.coupling_work, e.stored() - energies[0].stored() - e.work()});
   expect_table(s.folder / "energy.csv",
                "time_s,strain_J_per_m,kinetic_J_per_m,machine_J_per_m,top_work_J_per_m,trigger_work_J_per_m,"
                "prestress_work_J_per_m,"
@@ -107,7 +107,7 @@ TEST_F(WrittenRun, TablesHoldWhatWasComputed) {
                rows);
 
   rows.clear();
-  const auto& state = s.initial.common.tractions;
+  const auto& state = s.initial.subcritical.tractions;
   for (std::size_t k = 0; k < state.x_m.size(); ++k)
     rows.push_back({state.x_m[k], state.t_s_Pa[k], state.p_s_Pa[k]});
   expect_table(s.folder / "static.csv", "x_m,t_s_Pa,p_s_Pa", rows);
@@ -152,7 +152,7 @@ TEST_F(WrittenRun, SummaryTellsTheRun) {
       {"/time_s", s.result.event.time_s},
       {"/onsets", s.result.event.record.n_onsets()},
       {"/statics/critical_shear_m", s.initial.critical_shear_m},
-      {"/statics/common_peak_t_over_p", s.initial.common.peak_ratio}};
+      {"/statics/common_peak_t_over_p", s.initial.subcritical.peak_ratio}};
   for (const auto& [place, value] : values) EXPECT_EQ(run.at(json::json_pointer(place)), value) << place;
   EXPECT_FALSE(run["statics"].contains("ramp"));
   ASSERT_EQ(run["fronts"].size(), s.result.fronts.size());
@@ -209,8 +209,8 @@ TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
   const auto u = test::read(file, "/VTKHDF/PointData/displacement_m");
   ASSERT_EQ(u.values.size(), 3 * 3 * n_nodes);
   for (std::size_t n = 0; n < n_nodes; ++n) {
-    EXPECT_EQ(u.values[3 * n], s.initial.spontaneous.u_m.x[n]);
-    EXPECT_EQ(u.values[3 * n + 1], s.initial.spontaneous.u_m.y[n]);
+    EXPECT_EQ(u.values[3 * n], s.initial.supercritical.u_m.x[n]);
+    EXPECT_EQ(u.values[3 * n + 1], s.initial.supercritical.u_m.y[n]);
   }
 }
 
@@ -287,9 +287,9 @@ TEST(Write, OfARampTellsBothWays) {
   const test::TemporaryFolder folder;
   write(folder.path(), run_from(config, initial, go_on), initial);
   const json ramp = json::parse(test::read_file(folder / "run.json"))["statics"]["ramp"];
-  EXPECT_EQ(ramp["critical_shear_m"], initial.ramp->spontaneous.shear_m);
+  EXPECT_EQ(ramp["critical_shear_m"], initial.ramp->supercritical.shear_m);
   EXPECT_DOUBLE_EQ(ramp["relative_to_direct"],
-                   initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1);
+                   initial.ramp->supercritical.shear_m / initial.critical_shear_m - 1);
   EXPECT_EQ(ramp["steps"], initial.ramp->steps);
   EXPECT_EQ(ramp["onsets_before_critical"], initial.ramp->record.n_onsets());
 }

@@ -22,7 +22,7 @@ class Phases:
 
     x_m: np.ndarray  # [nodes]
     borders: np.ndarray  # levels between rows [rows + 1]
-    time_s: np.ndarray  # since the tilt [rows]
+    time_s: np.ndarray  # since normal loading [rows]
     slip_rate_m_per_s: np.ndarray  # magnitude, NaN where contact is open [rows, nodes]
 
 

@@ -230,7 +230,7 @@ def plots(data: dict[str, Any], n_nodes: int) -> dict[str, str]:
             "slips",
             "Slip",
             plot("slips-plot", "Slip along the interface after each event"),
-            "<p>Slip since the tilt, after each event: the sum of what the records end with. Dark: the "
+            "<p>Slip since normal loading, after each event: the sum of what the records end with. Dark: the "
             f"first event, light: the last.{thinning(data, n_nodes)}</p>",
         )
     if data["phases"]:

@@ -29,7 +29,7 @@ struct ExponentialSlipWeakening {
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }
-  /// Of linear slip weakening with this fracture energy, (mu_s - mu_k) p d_c.
+  /// d_c of linear slip weakening with this fracture energy, (mu_s - mu_k) p d_c.
   double weakening_slip_m() const { return 2 * d_c_m; }
 
   template <class V>

@@ -17,7 +17,7 @@ struct Parameter {
   const char* help;
 };
 
-/// The same of a list of numbers.
+/// A parameter that is a list of numbers.
 template <class Law>
 struct ListParameter {
   const char* key;

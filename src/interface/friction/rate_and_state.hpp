@@ -21,7 +21,7 @@ enum class StateEvolution {
   strong_weakening,  ///< as slip, towards a steady coefficient that falls to f_w beyond V_w
 };
 
-/// Of strong weakening alone.
+/// Parameters of strong weakening alone.
 template <bool weakens_strongly>
 struct StrongWeakening {};
 template <>
@@ -120,7 +120,7 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
         const V steady = steady_state(speed);
         return steady + (psi - steady) * left;
       }
-      // Of V0 theta/d_c; lost / V is dt/d_c at rest.
+      // V0 theta/d_c as it grows; lost / V is dt/d_c at rest.
       const V grown = select(lost > 1e-140, V0_m_per_s * lost / speed, V0_m_per_s * per_d_c_per_m * dt_s);
       const V age = (psi - f0) * per_b;  // ln(V0 theta/d_c)
       constexpr double large = 600;
@@ -166,7 +166,7 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     return law.state_of(std::abs(t_Pa) / p_Pa, std::log(V_i_m_per_s / V0_m_per_s));
   }
 
-  /// Of steady sliding, at V_i where that is faster.
+  /// Coefficient of steady sliding, at V_i where that is faster.
   double steady_coefficient(double speed_m_per_s) const {
     return evaluator().steady_coefficient(std::max(speed_m_per_s, V_i_m_per_s));
   }

@@ -32,8 +32,8 @@ constexpr double negligible_part = 1e-12;
 constexpr double balance_tolerance = 1e-6;
 
 double supplied_J_per_m(const record::Energies& now, const record::Energies& start) {
-  // Of a plate at rest rounding may leave less than nothing.
-  return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
+  // Rounding may leave less than nothing of a plate at rest.
+  return std::max(0.0, start.stored()) + std::abs(now.far_edge_work) + std::abs(now.trigger_work) +
          std::abs(now.prestress_work) + std::max(0.0, -now.machine);
 }
 
@@ -46,7 +46,7 @@ const char* strongest_load(const record::Energies& now, const record::Energies& 
   const std::array<Load, 4> loads = {{
       {std::abs(now.trigger_work), "event.trigger_amount, or nucleation.overstress_Pa of a patch"},
       {std::abs(now.prestress_work), "prestress.t_Pa, or the tractions in prestress.file"},
-      {std::abs(now.top_work), "loading.shear_speed_over_c_L"},
+      {std::abs(now.far_edge_work), "loading.shear_speed_over_c_L"},
       {start.stored(), "loading.tilt_left_m and loading.tilt_right_m, or the force given instead"},
   }};
   return std::ranges::max_element(loads, {}, &Load::energy_J_per_m)->keys;

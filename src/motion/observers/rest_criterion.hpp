@@ -7,7 +7,7 @@
 
 namespace slipfront::motion {
 
-/// Of the bodies of an event.
+/// Waves in the bodies of an event.
 struct Waves {
   double c_L_m_per_s = 0;  ///< of the faster body
   /// Traction per slip rate of shear waves that leave the interface at right angles: G/c_S on the rigid

@@ -5,7 +5,7 @@
 
 namespace slipfront::motion {
 
-StickCriterion::StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s,
+StickCriterion::StickCriterion(const statics::Equilibrium& state, const Interval& stretch, double quiet_s,
                                double stuck_m_per_s, double slow_m_per_s)
     : is_slipping_(state.contact.size()),
       quiet_s_(quiet_s),

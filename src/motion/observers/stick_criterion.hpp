@@ -10,12 +10,12 @@
 
 namespace slipfront::motion {
 
-/// Of the rate scale, see slip_rate_scale_m_per_s: some nanometres a second, less than where slip begins by
-/// any margin of the load that counts.
+/// Share of the rate scale, see slip_rate_scale_m_per_s: some nanometres a second, less than where slip
+/// begins by any margin of the load that counts.
 inline constexpr double stuck_slip_fraction = 1e-9;
 
 /// A part of the interface, m.
-struct Stretch {
+struct Interval {
   double from_m = 0, to_m = 0;
 };
 
@@ -27,7 +27,7 @@ class StickCriterion final : public Observer {
   /// @param state  in which the event begins, all nodes sticking
   /// @param stuck_m_per_s  slip rate up to which all nodes count as stuck
   /// @param slow_m_per_s   slip rate up to which equilibria may slip
-  StickCriterion(const statics::Equilibrium& state, const Stretch& stretch, double quiet_s,
+  StickCriterion(const statics::Equilibrium& state, const Interval& stretch, double quiet_s,
                  double stuck_m_per_s, double slow_m_per_s = infinity);
 
   void at_update(const SlipUpdate& seen) override;

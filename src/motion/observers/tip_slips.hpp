@@ -35,7 +35,8 @@ class TipSlips final : public Observer {
   std::vector<std::int32_t> fresh_;  ///< nodes whose first onset no row has passed
 };
 
-/// The same at all rows of a history, in which a node slips while |slip rate| is above threshold_m_per_s.
+/// Slip behind the tips at all rows of a history, in which a node slips while |slip rate| is above
+/// threshold_m_per_s.
 /// @pre matrices of matching sizes
 record::TipSlip tip_slip_from_history(const record::History& history, double threshold_m_per_s);
 

@@ -27,7 +27,7 @@ function drawForces(sequence) {
     traces.push({type: 'scatter', mode: 'lines', name: 'μ<sub>s</sub> of a node', x: [loading.time[0], loading.time.at(-1)], y: [strength, strength],
       hoverinfo: 'skip', line: {color: '#555', width: 1, dash: 'dash'}});
   }
-  const time = `t since the tilt (${units.time})`;
+  const time = `t since normal loading (${units.time})`;
   const layout = layoutWith({
     xaxis: axis(time, {domain: [0, 0.45], anchor: 'y'}), yaxis: axis(forceRatio, {rangemode: 'tozero'}),
     xaxis2: axis(time, {domain: [0.56, 1], anchor: 'y2'}), yaxis2: axis(`F<sub>S</sub> (${units.force})`, {rangemode: 'tozero', anchor: 'x2'}),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/grips.hpp"
+#include "motion/machine_springs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,27 +11,27 @@ namespace slipfront::motion {
 namespace {
 
 /// The nodes with springs, ascending.
-std::vector<mesh::AbsorbingNode> sprung_nodes(const mesh::Mesh& mesh) {
-  std::vector<mesh::AbsorbingNode> nodes;
-  for (const auto& a : mesh.absorbing)
-    if (mesh::is_spring(a.grip_x_N_per_m) || mesh::is_spring(a.grip_y_N_per_m)) nodes.push_back(a);
-  std::ranges::sort(nodes, {}, &mesh::AbsorbingNode::node);
+std::vector<mesh::BoundaryNode> sprung_nodes(const mesh::Mesh& mesh) {
+  std::vector<mesh::BoundaryNode> nodes;
+  for (const auto& a : mesh.boundary)
+    if (mesh::is_spring(a.spring_x_N_per_m) || mesh::is_spring(a.spring_y_N_per_m)) nodes.push_back(a);
+  std::ranges::sort(nodes, {}, &mesh::BoundaryNode::node);
   return nodes;
 }
 
-double stiffness_of(const std::optional<double>& grip_N_per_m) {
-  return mesh::is_spring(grip_N_per_m) ? *grip_N_per_m : 0;
+double stiffness_of(const std::optional<double>& spring_N_per_m) {
+  return mesh::is_spring(spring_N_per_m) ? *spring_N_per_m : 0;
 }
 
 }  // namespace
 
-Grips::Grips(const mesh::Mesh& mesh, const solid::Material& material) {
+MachineSprings::MachineSprings(const mesh::Mesh& mesh, const solid::Material& material) {
   for (const auto& a : sprung_nodes(mesh)) {
     node_.push_back(a.node);
-    has_spring_.x.push_back(mesh::is_spring(a.grip_x_N_per_m));
-    has_spring_.y.push_back(mesh::is_spring(a.grip_y_N_per_m));
-    stiffness_.x.push_back(stiffness_of(a.grip_x_N_per_m));
-    stiffness_.y.push_back(stiffness_of(a.grip_y_N_per_m));
+    has_spring_.x.push_back(mesh::is_spring(a.spring_x_N_per_m));
+    has_spring_.y.push_back(mesh::is_spring(a.spring_y_N_per_m));
+    stiffness_.x.push_back(stiffness_of(a.spring_x_N_per_m));
+    stiffness_.y.push_back(stiffness_of(a.spring_y_N_per_m));
   }
   if (node_.empty()) return;
   rows_ = solid::assemble_rows(mesh, material, node_);
@@ -39,12 +39,12 @@ Grips::Grips(const mesh::Mesh& mesh, const solid::Material& material) {
   speed_x_m_per_s_.resize(node_.size());
 }
 
-std::size_t Grips::place(mesh::Node n) const {
+std::size_t MachineSprings::place(mesh::Node n) const {
   const auto found = std::ranges::lower_bound(node_, n);
   return found != node_.end() && *found == n ? static_cast<std::size_t>(found - node_.begin()) : none;
 }
 
-void Grips::start(const solid::Field& u_m, double speed_m_per_s) {
+void MachineSprings::start(const solid::Field& u_m, double speed_m_per_s) {
   if (empty()) return;
   solid::for_each_row_product(rows_, u_m, [&](std::size_t k, double x, double y) {
     const auto n = node_[k];
@@ -54,28 +54,28 @@ void Grips::start(const solid::Field& u_m, double speed_m_per_s) {
   });
 }
 
-void Grips::move(std::size_t k, double dt_s, solid::Pair force_N, solid::Pair before, solid::Pair after,
-                 record::Energies& works) {
+void MachineSprings::move(std::size_t k, double dt_s, solid::Pair force_N, solid::Pair before,
+                          solid::Pair after, record::Energies& works) {
   const double of_machine = dt_s * force_N.x * speed_x_m_per_s_[k];
-  works.top_work += of_machine;
+  works.far_edge_work += of_machine;
   works.machine +=
       of_machine - 0.5 * dt_s * (force_N.x * (before.x + after.x) + force_N.y * (before.y + after.y));
   force_N_.x[k] += dt_s * stiffness_.x[k] * speed_x_m_per_s_[k];
 }
 
-void Grips::reverse() {
+void MachineSprings::reverse() {
   for (double& speed : speed_x_m_per_s_) speed = -speed;
 }
 
-double largest_grip_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::Material& material,
-                                        const std::vector<bool>& of_node) {
+double largest_spring_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::Material& material,
+                                          const std::vector<bool>& of_node) {
   const auto nodes = sprung_nodes(mesh);
   if (nodes.empty()) return 0;
   const auto mass_kg = solid::lumped_mass(mesh, material);
   double largest = 0;
   for (const auto& a : nodes) {
     if (mass_kg[a.node] == 0 || (!of_node.empty() && !of_node[a.node])) continue;
-    const double k = std::max(stiffness_of(a.grip_x_N_per_m), stiffness_of(a.grip_y_N_per_m));
+    const double k = std::max(stiffness_of(a.spring_x_N_per_m), stiffness_of(a.spring_y_N_per_m));
     largest = std::max(largest, k / mass_kg[a.node]);
   }
   return std::sqrt(largest);

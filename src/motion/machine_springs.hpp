@@ -15,12 +15,12 @@ namespace slipfront::motion {
 /// What a loading machine pulls of a body's boundary by springs: at each node the force force_N - k u. It is
 /// that of the equilibrium at the start, and force_N grows as the machine moves on along x; where k is 0 it
 /// stays.
-class Grips {
+class MachineSprings {
  public:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-  Grips() = default;
-  Grips(const mesh::Mesh& mesh, const solid::Material& material);
+  MachineSprings() = default;
+  MachineSprings(const mesh::Mesh& mesh, const solid::Material& material);
 
   bool empty() const { return node_.empty(); }
   /// none where no spring pulls the node.
@@ -38,7 +38,7 @@ class Grips {
   void reverse();
 
   const std::vector<mesh::Node>& nodes() const { return node_; }
-  /// Of the nodes: what changes, and what follows from the start.
+  /// Arrays over the nodes: what changes, and what follows from the start.
   std::vector<std::vector<double>*> arrays() { return {&force_N_.x, &force_N_.y, &speed_x_m_per_s_}; }
 
  private:
@@ -52,7 +52,7 @@ class Grips {
 
 /// Largest frequency of a spring and its node's mass.
 /// @param of_node  nodes that count; empty: all
-double largest_grip_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::Material& material,
-                                        const std::vector<bool>& of_node = {});
+double largest_spring_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::Material& material,
+                                          const std::vector<bool>& of_node = {});
 
 }  // namespace slipfront::motion
