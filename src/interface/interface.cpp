@@ -14,7 +14,6 @@ namespace slipfront::interface {
 Interface::Interface(std::size_t n, std::span<const LawState> states_of_law) {
   for (const auto& field : interface_fields)
     std::visit([&](auto array) { (this->*array).assign(n, field.initial); }, field.array);
-  for (auto* values : BreakdownState::arrays(breakdown)) values->assign(n, 0);
   law_states.assign(states_of_law.size(), std::vector<double>(n));
 }
 

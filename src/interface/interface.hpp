@@ -38,34 +38,6 @@ struct ContactModel {
   }
 };
 
-/// What is known of breakdowns under way and of those that have ended. All arrays [nodes]
-struct BreakdownState {
-  // At the peak, the least, and the last fall that counts; coefficients are (|t| - cohesion)/p.
-  std::vector<double> peak_t_Pa, peak_coefficient, least_coefficient, residual_t_Pa;
-  std::vector<double> counted_coefficient, counted_slip_m;
-  // Sums since slip began, impulses since the peak.
-  std::vector<double> slip_m, work_of_t_J_per_m2, work_of_p_J_per_m2, impulse_of_t_Pa_s, impulse_of_p_Pa_s;
-  // Integrals of the traction above the residual one, up to the least coefficient.
-  std::vector<double> work_J_per_m2, impulse_Pa_s;
-
-  template <class Self>
-  static auto arrays(Self& s) {
-    return std::array{&s.peak_t_Pa,
-                      &s.peak_coefficient,
-                      &s.least_coefficient,
-                      &s.residual_t_Pa,
-                      &s.counted_coefficient,
-                      &s.counted_slip_m,
-                      &s.slip_m,
-                      &s.work_of_t_J_per_m2,
-                      &s.work_of_p_J_per_m2,
-                      &s.impulse_of_t_Pa_s,
-                      &s.impulse_of_p_Pa_s,
-                      &s.work_J_per_m2,
-                      &s.impulse_Pa_s};
-  }
-};
-
 /// State of the interface nodes between two (sub-)steps, contiguous and component by component. All arrays
 /// [nodes].
 ///
@@ -102,8 +74,6 @@ struct Interface {
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
   /// State variables of the friction law, see FrictionLaw::states.
   std::vector<std::vector<double>> law_states;
-  std::vector<std::uint8_t> breaking, broken;  ///< 1 while, and after, friction breaks down at a node
-  BreakdownState breakdown;
   bool is_time_weakening = false;
   bool begun = false;  ///< whether there was an update since start_contact
 
@@ -128,9 +98,9 @@ struct InterfaceField {
   std::uint8_t initial = 0;
 };
 
-/// All arrays but those of the friction law and of breakdowns. One that is added here is allocated, sent in
-/// halos, kept in checkpoints and restored.
-inline constexpr std::array<InterfaceField, 20> interface_fields = {{
+/// All arrays but those of the friction law. One that is added here is allocated, sent in halos, kept in
+/// checkpoints and restored.
+inline constexpr std::array<InterfaceField, 18> interface_fields = {{
     {"initial_gap", "m", FieldKind::body, &Interface::initial_gap_m},
     {"mass_per_length", "kg/m2", FieldKind::body, &Interface::mass_per_length_kg_m2},
     {"tangential_mass_ratio", "1", FieldKind::body, &Interface::tangential_mass_ratio, 1},
@@ -149,16 +119,13 @@ inline constexpr std::array<InterfaceField, 20> interface_fields = {{
     {"target", "Pa", FieldKind::memory, &Interface::target_Pa},
     {"acceleration", "m/s2", FieldKind::memory, &Interface::acceleration_m_per_s2},
     {"locked", "1", FieldKind::memory, &Interface::locked},
-    {"breaking", "1", FieldKind::memory, &Interface::breaking},
-    {"broken", "1", FieldKind::memory, &Interface::broken},
 }};
 
-/// Calls f(kind, values) for each array, those of breakdowns and of the friction law last.
+/// Calls f(kind, values) for each array, those of the friction law last.
 template <class State, class F>
 void for_each_field(State& state, F&& f) {
   for (const auto& field : interface_fields)
     std::visit([&](auto array) { f(field.kind, state.*array); }, field.array);
-  for (auto* values : BreakdownState::arrays(state.breakdown)) f(FieldKind::memory, *values);
   for (auto& values : state.law_states) f(FieldKind::memory, values);
 }
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "interface/breakdown.hpp"
 
 namespace slipfront::motion {
 
@@ -22,6 +21,7 @@ Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBo
     : bodies_(std::move(bodies)),
       contact_(contact),
       interface_(bodies_.front().side->nodes.size(), contact.law.states()),
+      breakdown_(interface_.size()),
       tributary_m_(bodies_.front().side->tributary_m),
       v_x_before_(interface_.size()),
       v_y_before_(interface_.size()),
@@ -101,7 +101,7 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
     interface_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
     interface_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
     interface_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
-    interface_.broken[i] = interface_.slipping[i];
+    if (interface_.slipping[i] != 0) breakdown_.leave_out(i);
   }
   std::ranges::fill(interface_.strength_fraction, 1.0);
   start_contact(contact_, interface_);
@@ -141,6 +141,7 @@ void Coupling::add_to(StateView& state) {
     if (kind == interface::FieldKind::result || kind == interface::FieldKind::memory)
       arrays.push_back(values);
   });
+  breakdown_.for_each_array([&](auto& values) { arrays.push_back(values); });
   for (const auto* load : Loads::arrays(std::as_const(loads_)))
     if (!load->empty()) arrays.push_back(*load);
   arrays.push_back(start_u_x_m_);
@@ -173,7 +174,7 @@ void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, reco
   if (sample != nullptr) append_law_states(*sample);
   const bool changed = interface::update_contact(contact_, dt_s, interface_);
   observer.observe(time_s, interface_, changed);
-  interface::follow_breakdown(contact_, dt_s, v_x_before_, changed, interface_);
+  follow_breakdown(dt_s, changed);
   if (sample != nullptr) append_sample(time_s, *sample);
   if (sides_.empty())
     scatter(dt_s, works);
@@ -196,8 +197,23 @@ SlipRates Coupling::slip_rates() const {
   return rates;
 }
 
+void Coupling::follow_breakdown(double dt_s, bool changed) {
+  const auto& s = interface_;
+  breakdown_.follow(
+      dt_s, changed, [&](std::size_t i) { return s.slipping[i]; },
+      [&](std::size_t i) {
+        // As in the work of friction: slip at the mean velocity over the kick.
+        return interface::NodeFriction {
+          s.t_Pa[i], interface::pressure_of_friction_Pa(contact_, s, i), s.strength_Pa[i],
+              contact_.law_at(i).cohesion_Pa(),
+              0.5 * dt_s*(s.v_x_m_per_s[i] + v_x_before_[i]), s.slipping[i] != 0
+        };
+      });
+}
+
 record::Breakdown Coupling::breakdown() const {
-  return interface::breakdown_of(contact_, interface_, own_begin_, own_end_);
+  return breakdown_.found(own_begin_, own_end_,
+                          [&](std::size_t i) { return contact_.law_at(i).cohesion_Pa(); });
 }
 
 double Coupling::largest_acceleration_m_per_s2() const {

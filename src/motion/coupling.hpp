@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "interface/breakdown.hpp"
 #include "interface/interface.hpp"
 #include "interface/trigger.hpp"
 #include "mesh/node_columns.hpp"
@@ -12,7 +13,6 @@
 #include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
 #include "motion/time_stepper.hpp"
-#include "record/breakdown.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
@@ -90,6 +90,7 @@ class Coupling {
     interface::for_each_field(interface_, [&](interface::FieldKind kind, auto& values) {
       if (kind == interface::FieldKind::memory) visit(values.data() + nodes.begin, n);
     });
+    breakdown_.for_each_array([&](auto& values) { visit(values.data() + nodes.begin, n); });
     for (auto& side : sides_)
       for (auto* values : {&side.v_x, &side.v_y}) visit(values->data() + nodes.begin, n);
   }
@@ -128,6 +129,8 @@ class Coupling {
   void scatter_both(double dt_s, record::Energies& works);
   /// Brings weakening nodes to this time.
   void weaken(double time_s);
+  /// @param changed  update_contact's answer
+  void follow_breakdown(double dt_s, bool changed);
   void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const;
   /// Before an update, which takes them on to the next one.
   void append_law_states(record::History& history) const;
@@ -137,6 +140,7 @@ class Coupling {
   std::vector<ContactBody> bodies_;
   interface::ContactModel contact_;
   interface::Interface interface_;
+  interface::BreakdownMonitor breakdown_;
   std::vector<double> tributary_m_;      ///< [nodes]
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [nodes]
   /// Relative, of the update under way. [nodes]

@@ -19,34 +19,29 @@ constexpr double dt_s = 1e-9, p_Pa = 5e6;
 /// A node under a pressure that a function of the slip gives, at a slip rate that another one gives.
 struct Slipping {
   ContactModel model;
-  Interface state = Interface(3);
-  double v_m_per_s = 0;
+  BreakdownMonitor monitor = BreakdownMonitor(3);
+  double v_m_per_s = 0, slip_m = 0;
+  bool slips = false;
 
-  explicit Slipping(const FrictionLaw& law) : model{law} {
-    state.p_Pa.assign(3, p_Pa);
-    start_contact(model, state);
-    for (const auto& [values, value] :
-         {std::pair(&state.mass_per_length_kg_m2, 1e-2), std::pair(&state.tangential_mass_ratio, 1.0)})
-      values->assign(3, value);
-  }
+  explicit Slipping(const FrictionLaw& law) : model{law} {}
   /// Updates node 1 alone: the node is driven so that it has the rate afterwards.
   template <class Coefficient>
   void go(double rate_m_per_s, Coefficient&& coefficient, double pressure_Pa = p_Pa) {
-    const bool begins = state.slipping[1] == 0;
-    const double mean = 0.5 * (v_m_per_s + rate_m_per_s);
-    const double mu = coefficient(mean, state.slip_m[1]);
-    state.strength_Pa[1] =
-        begins ? coefficient(0.0, 0.0) * pressure_Pa + model.law.cohesion_Pa() : mu * pressure_Pa;
-    state.t_Pa[1] = mu * pressure_Pa + model.law.cohesion_Pa();
-    state.p_Pa[1] = pressure_Pa;
-    state.slipping[1] = 1;
-    state.v_x_m_per_s[1] = rate_m_per_s;
-    const std::vector<double> before(3, v_m_per_s);
-    follow_breakdown(model, dt_s, before, begins, state);
-    state.slip_m[1] += dt_s * mean;
+    const bool begins = !slips;
+    slips = true;
+    const double mean = 0.5 * (v_m_per_s + rate_m_per_s), cohesion_Pa = model.law.cohesion_Pa();
+    const double mu = coefficient(mean, slip_m);
+    const double strength_Pa = begins ? coefficient(0.0, 0.0) * pressure_Pa + cohesion_Pa : mu * pressure_Pa;
+    const NodeFriction now{
+        mu * pressure_Pa + cohesion_Pa, pressure_Pa, strength_Pa, cohesion_Pa, dt_s * mean, true};
+    monitor.follow(
+        dt_s, begins, [](std::size_t i) { return i == 1; }, [&](std::size_t) { return now; });
+    slip_m += dt_s * mean;
     v_m_per_s = rate_m_per_s;
   }
-  record::Breakdown found() const { return breakdown_of(model, state, 0, 3); }
+  record::Breakdown found() const {
+    return monitor.found(0, 3, [&](std::size_t) { return model.law.cohesion_Pa(); });
+  }
 };
 
 /// A rate that rises and falls again, as behind a tip. @param n  updates

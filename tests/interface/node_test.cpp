@@ -133,13 +133,11 @@ TEST(InterfaceFields, AreAllArraysThatNodesHave) {
     EXPECT_EQ(values.size(), 3U);
     arrays.insert(values.data());
   });
-  EXPECT_EQ(arrays.size(),
-            interface_fields.size() + BreakdownState::arrays(s.breakdown).size() + states.size());
+  EXPECT_EQ(arrays.size(), interface_fields.size() + states.size());
   // An array that the table lacks would make the struct larger.
   struct Expected {
     std::vector<double> fields[interface_fields.size()];
     decltype(Interface::law_states) of_law;
-    BreakdownState breakdown;
     bool begun;
   };
   EXPECT_EQ(sizeof(Interface), sizeof(Expected));
