@@ -141,7 +141,7 @@ quick: ready  ## the same in a second, on a coarse mesh, into results-quick/
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
 
 verify: ready-to-test  ## problems with known answers, with their pictures, and the energy balance over a million steps
-	$(PROGRAM) verify -o $(RESULTS)-verify
+	$(BUILD)/slipfront-verify -o $(RESULTS)-verify
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
 	$(BUILD)/test_motion --gtest_also_run_disabled_tests --gtest_filter='*Million*'
 
@@ -260,7 +260,7 @@ lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or
 
 # In a folder of its own: clang cannot read what gcc has precompiled.
 tidy: packages lint-packages $(VENV)/.installed  ## clang-tidy over the program's sources, or MODULES=motion alone
-	@cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF -D SLIPFRONT_TESTS=OFF -D SLIPFRONT_PYTHON=ON \
+	@cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF -D SLIPFRONT_PYTHON=ON \
 	  -D Python_EXECUTABLE=$(abspath $(PYTHON))
 	@cmake --build build/tidy --target slipfront_version
 	@scripts/tidy build/tidy $(MODULES)

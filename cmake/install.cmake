@@ -8,7 +8,7 @@ install(TARGETS slipfront COMPONENT runtime)
 install(FILES CITATION.cff README.md DESTINATION ${doc_folder} COMPONENT runtime)
 install(FILES packaging/copyright DESTINATION ${doc_folder} COMPONENT runtime)
 install(DIRECTORY docs papers verification DESTINATION ${doc_folder} COMPONENT runtime
-        PATTERN *.cpp EXCLUDE PATTERN *.hpp EXCLUDE PATTERN *.toml EXCLUDE)
+        PATTERN *.cpp EXCLUDE PATTERN *.hpp EXCLUDE PATTERN *.toml EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/slipfront COMPONENT runtime)
 install(DIRECTORY papers DESTINATION ${CMAKE_INSTALL_DATADIR}/slipfront COMPONENT runtime
         FILES_MATCHING PATTERN *.toml PATTERN figures EXCLUDE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts numbers and picture of `slipfront verify -o DIR` at the end of each page of verification."""
+"""Puts numbers and picture of `slipfront-verify -o DIR` at the end of each page of verification."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from shared import DataError, after_mark, expecting, read_result, read_text, run, write_pages
 
 MARK = "<!-- numbers -->"
-MOST_ROWS = 8  # of a table; `slipfront verify` prints every check
+MOST_ROWS = 8  # of a table; `slipfront-verify` prints every check
 
 
 def shown(checks: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -69,7 +69,7 @@ def write(results_dir: Path, pages: Path) -> None:
     for page in files:
         file = results_dir / f"{page.stem}.json"
         results = read_result(file)
-        with expecting("a file of `slipfront verify`", file):
+        with expecting("a file of `slipfront-verify`", file):
             content = numbers(results)
             rows.append(row_of(results, page.name))
         texts[page.name] = after_mark(page, read_text(page), MARK, content)
@@ -81,7 +81,7 @@ def write(results_dir: Path, pages: Path) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
+    parser.add_argument("results", metavar="DIR", type=Path, help="output folder of `slipfront-verify`")
     parser.add_argument("pages", type=Path, help="verification")
     options = parser.parse_args()
     sys.exit(run(__file__, lambda: write(options.results, options.pages)))

@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "base/version.hpp"
-#include "files/files.hpp"
 #include "verification/problems.hpp"
 
 namespace slipfront::verification {
@@ -65,41 +62,6 @@ std::span<const Verification> verifications() {
       Verification{"crack", "A crack under friction that weakens with slip", crack::verify},
   };
   return all;
-}
-
-void write_outcome(const std::filesystem::path& dir, const Verification& verification, Effort effort,
-                   const Outcome& outcome) {
-  using nlohmann::ordered_json;
-  ordered_json checks = ordered_json::array(), charts = ordered_json::array();
-  for (const auto& c : outcome.checks)
-    checks.push_back({{"quantity", c.quantity},
-                      {"unit", c.unit},
-                      {"measured", c.measured},
-                      {"expected", c.expected},
-                      {"tolerance", c.tolerance},
-                      {"reason", c.reason},
-                      {"holds", c.holds()}});
-  for (const auto& chart : outcome.charts) {
-    ordered_json curves = ordered_json::array();
-    for (const auto& c : chart.curves)
-      curves.push_back({{"label", c.label},
-                        {"kind", c.kind == Curve::Kind::theory ? "theory" : "program"},
-                        {"x", c.x},
-                        {"y", c.y}});
-    charts.push_back({{"x_label", chart.x_label},
-                      {"y_label", chart.y_label},
-                      {"log_x", chart.log_x},
-                      {"log_y", chart.log_y},
-                      {"curves", curves}});
-  }
-  const ordered_json all = {{"version", version_line()},
-                            {"name", verification.name},
-                            {"title", verification.title},
-                            {"effort", effort == Effort::quick ? "quick" : "full"},
-                            {"holds", outcome.holds()},
-                            {"checks", checks},
-                            {"charts", charts}};
-  files::write_text(dir / (verification.name + ".json"), all.dump(1) + "\n");
 }
 
 }  // namespace slipfront::verification

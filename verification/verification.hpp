@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -85,10 +84,5 @@ struct Verification {
 
 /// All of them, in the order of the docs.
 std::span<const Verification> verifications();
-
-/// dir/<name>.json: the checks and the charts' curves.
-/// @throws WriteError
-void write_outcome(const std::filesystem::path& dir, const Verification& verification, Effort effort,
-                   const Outcome& outcome);
 
 }  // namespace slipfront::verification

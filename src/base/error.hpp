@@ -63,11 +63,6 @@ struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A problem with a known answer was solved otherwise than it should be; exit code 4.
-struct VerificationFailed : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 namespace detail {
 /// Prints the broken condition with its place and aborts.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line, const char* why);

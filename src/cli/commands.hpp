@@ -17,7 +17,6 @@ namespace slipfront::cli {
 void add_run(CLI::App& app, Processes& processes);
 void add_reproduce(CLI::App& app);
 void add_study(CLI::App& app);
-void add_verify(CLI::App& app);
 void add_info(CLI::App& app);
 void add_fracture(CLI::App& app);
 void add_bench(CLI::App& app);

@@ -74,9 +74,6 @@ The user's input cannot be used; one line on standard error says where and what 
 3
 The computed motion is no longer physical.
 .TP
-4
-A verification problem failed.
-.TP
 128 + \fIn\fR
 Ended by signal \fIn\fR.
 .SH SIGNALS

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -28,20 +30,29 @@ struct CommandDescription {
   std::vector<CommandDescription> subcommands;
 };
 
-/// The program's command line, by CLI11.
+/// A program's command line, by CLI11.
 class Program {
  public:
-  Program(const char* name, const char* description, const std::string& version);
+  Program(const char* name, const char* description);
   ~Program();
 
   CLI::App& app() { return *app_; }
   CommandDescription description() const;
-  /// Parses the command line and does the subcommand's work, or prints the help or version it asks for.
+  /// Parses the command line and does its or the subcommand's work, or prints the help or version it asks
+  /// for.
   /// @throws UserError where it cannot be understood
   void run(int argc, char** argv);
 
  private:
   std::unique_ptr<CLI::App> app_;
 };
+
+/// All that a main does: prepares the process, and works.
+/// @param work  gives the exit code
+/// @return this, or that of the exception that ended the work, of which a line on standard error tells
+int exit_code_of(const std::function<int()>& work);
+
+/// The exit code for the exception under way, and the line that says why.
+std::pair<int, std::string> reason_to_end();
 
 }  // namespace slipfront::cli

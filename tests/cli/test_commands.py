@@ -6,7 +6,7 @@ import re
 import pytest
 from common import ROOT, refusal, require_done, sets
 
-COMMANDS = ["run", "reproduce", "study", "verify", "info", "fracture", "bench", "validate", "new", "keys"]
+COMMANDS = ["run", "reproduce", "study", "info", "fracture", "bench", "validate", "new", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "gauges", "sweep"]
 PYTHON_STUDIES = ["study convergence", "study interface-step"]
 CASES = sorted((ROOT / "papers/kammer2012").glob("*.toml"))

@@ -143,9 +143,10 @@ def run_over_work_setting(bench):
 
 def verify_setting(bench):
     """Adds to a set."""
+    bench = bench.of_verifications()
     old_folder = bench.folder()
-    bench.run("verify", "--quick", "column", "-o", old_folder)
-    return Setting(bench, "verify", ["verify", "--quick", "symmetry"], old_folder)
+    require_done(bench.run("--quick", "column", "-o", old_folder))
+    return Setting(bench, "verify", ["--quick", "symmetry"], old_folder)
 
 
 def reproduce_setting(bench):

@@ -53,7 +53,6 @@ def while_one_runs(setting):
             ("run", case, "-o", folder, "--overwrite"),
             ("run", "--restart", folder),
             ("reproduce", "--quick", "--overwrite", "-o", folder),
-            ("verify", "--quick", "symmetry", "-o", folder),
             ("study", "base", "--quick", "--overwrite", "-o", folder),
         ):
             line = one_line(bench.run(*command), 2)

@@ -10,7 +10,7 @@ import signal
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -41,6 +41,10 @@ class Bench:
     shim: Path
     scratch: Path
     _numbers: itertools.count = field(default_factory=itertools.count)
+
+    def of_verifications(self):
+        """The same with the program that solves problems with known answers."""
+        return replace(self, program=self.program.with_name("slipfront-verify"))
 
     def folder(self):
         """A path of its own at which nothing is."""

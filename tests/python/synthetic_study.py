@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes made-up output folders of the studies and of `slipfront verify`."""
+"""Writes made-up output folders of the studies and of `slipfront-verify`."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def write_study(folder: Path) -> Path:
 
 
 def write_verification(folder: Path) -> Path:
-    """A problem of `slipfront verify` with a chart of two curves."""
+    """A problem of `slipfront-verify` with a chart of two curves."""
     folder.mkdir()
     curves = [
         {"label": "closed form", "kind": "theory", "x": [1.0, 2.0, 4.0], "y": [1.0, 0.5, 0.25]},

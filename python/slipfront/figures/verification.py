@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The charts of `slipfront verify -o DIR`: theory as lines, the program's values as points.
+"""The charts of `slipfront-verify -o DIR`: theory as lines, the program's values as points.
 
 usage: python -m slipfront.figures.verification DIR FIGURES"""
 
@@ -91,9 +91,9 @@ def draw(file: Path) -> Drawing:
             draw_chart(figure.add_subplot(rows, columns, k + 1), chart)
         name, title = results["name"], results["title"]
     except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
-        raise DataError(f"{file}: not a file of `slipfront verify`: {error}") from None
+        raise DataError(f"{file}: not a file of `slipfront-verify`: {error}") from None
     if name != file.stem:
-        raise DataError(f"{file}: not a file of `slipfront verify`: its name is '{name}'")
+        raise DataError(f"{file}: not a file of `slipfront-verify`: its name is '{name}'")
     return Drawing(name, figure, str(title))
 
 
@@ -103,7 +103,7 @@ def draw_all(results: Path, figures: Path) -> list[str]:
     names = [path.name for path in results.glob("*.json")] if sums is None else list(sums)
     files = sorted(results / name for name in names if name.endswith(".json"))
     if not files:
-        raise DataError(f"{results}: no results of `slipfront verify`")
+        raise DataError(f"{results}: no results of `slipfront-verify`")
     with command.publishing_into(figures) as folder, matplotlib.rc_context(RC):
         for file in files:
             drawing = draw(file)
@@ -119,9 +119,9 @@ def main(results: Path, figures: Path) -> int:
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures.verification",
-        description="Draws the charts of `slipfront verify -o DIR` as FIGURES/NAME.png.",
+        description="Draws the charts of `slipfront-verify -o DIR` as FIGURES/NAME.png.",
     )
-    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
+    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront-verify`")
     parser.add_argument("figures", metavar="FIGURES", type=Path, help="folder for the pictures")
     return parser.parse_args()
 
