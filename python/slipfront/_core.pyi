@@ -5,6 +5,7 @@ The compiled part of slipfront; use the package slipfront, which explains it.
 from collections.abc import Callable, Sequence
 import enum
 import os
+import pathlib
 from typing import Annotated
 
 import numpy
@@ -361,9 +362,14 @@ class Case:
     def well_posedness(self, pressure_Pa: float, element_size_m: float, longest_wavelength_m: float) -> WellPosedness:
         """Of slow uniform sliding of the case's materials under its friction."""
 
-    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
+    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]], within: ResultFolder | None = None) -> None:
         """
-        Runs the case into a folder; progress(part, step, total) is called at times, each of the observers with an InterfaceState at its interval, s.
+        Runs the case into a folder; progress(part, step, total) is called at times, each of the observers with an InterfaceState at its interval, s. within: the ResultFolder of whose work the folder is a part.
+        """
+
+    def check(self) -> None:
+        """
+        What can be checked without solving anything: memory, geometry; raises CaseError.
         """
 
 def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Callable | None, progress: object | None) -> None:
@@ -677,6 +683,11 @@ def find_fronts(x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order
 def find_fronts_in_history(time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, tip_at_peak: bool, options: FrontOptions) -> list[Front]:
     """Fronts in a history of the interface, matrices [times, nodes]."""
 
+def falls_while_rises(s_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], falling: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rising: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], min_length_m: float) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+    """
+    Lengths of stretches of a path over which one quantity falls while another rises.
+    """
+
 def energy_density_J_per_m3(t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], youngs_modulus_Pa: float, poissons_ratio: float, plane_strain: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
     """Kammer et al. 2012, Eq. 2."""
 
@@ -742,10 +753,31 @@ class Spread:
     def n_bins(self) -> int:
         """bins with at least two series"""
 
+class Ratio:
+    """Ratio of the medians of y of two series at equal x."""
+
+    @property
+    def median(self) -> float:
+        """over the bins; NaN where no bin has both series"""
+
+    @property
+    def low(self) -> float:
+        """the smallest of a bin"""
+
+    @property
+    def high(self) -> float:
+        """the largest"""
+
+    @property
+    def n_bins(self) -> int:
+        """bins that both series reach"""
+
 def fit_exponential(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], resamples: int, block_points: int, confidence: float, seed: int) -> ExponentialFit:
     """Least squares over all points of all series (x, y)."""
 
 def spread_at_equal_x(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], bins: int) -> Spread: ...
+
+def ratio_at_equal_x(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], bins: int) -> Ratio: ...
 
 def rank_correlation(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> float:
     """Spearman's."""
@@ -772,6 +804,135 @@ class TipField:
     @property
     def limiting_speed_m_per_s(self) -> float:
         """up to which there is a field"""
+
+class Velocities:
+    """Of a plate's nodes at a time."""
+
+    @property
+    def time_s(self) -> float: ...
+
+    @property
+    def x_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def y_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+class BatchEvent:
+    """What a case of a batch has come to."""
+
+    @property
+    def blew_up(self) -> bool:
+        """see reason"""
+
+    @property
+    def reason(self) -> str: ...
+
+    @property
+    def speeds(self) -> WaveSpeeds:
+        """of the plate"""
+
+    @property
+    def fronts(self) -> list[Front]: ...
+
+    @property
+    def x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """of the interface [nodes]"""
+
+    @property
+    def t_s_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """before the event [nodes]"""
+
+    @property
+    def p_s_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """before the event [nodes]"""
+
+    @property
+    def inside_from_m(self) -> float:
+        """the part of the contact that counts as inside"""
+
+    @property
+    def inside_to_m(self) -> float: ...
+
+    @property
+    def peak_x_m(self) -> float:
+        """of t_s/p_s inside"""
+
+    @property
+    def critical_shear_m(self) -> float:
+        """shear at which slip begins inside"""
+
+    @property
+    def ramp_critical_shear_m(self) -> float:
+        """the same by the ramp; NaN where there was none"""
+
+    @property
+    def ramp_onsets(self) -> int:
+        """beginnings of slip at the edges during the ramp"""
+
+    @property
+    def onset_x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """where slip begins, in the order of time [onsets]"""
+
+    @property
+    def onset_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """when it does [onsets]"""
+
+    @property
+    def trigger_work_J_per_m(self) -> float:
+        """NaN where no energies were taken"""
+
+    @property
+    def node_x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """of the plate, of a case with snapshots [nodes]"""
+
+    @property
+    def node_y_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """the same"""
+
+    @property
+    def snapshots(self) -> list[Velocities]:
+        """those of the case; none of a run that was kept"""
+
+class Batch:
+    """Cases that run side by side and share their statics."""
+
+    def __init__(self, threads: int, kept: str | os.PathLike | None) -> None:
+        """kept: folder of the runs that are done."""
+
+    def run(self, cases: Sequence[Case], folders: Sequence[str | os.PathLike | None], done: Callable) -> None:
+        """
+        Runs cases, but for those that were kept; writes each into its folder, if any; calls done(k, event) as case k is done.
+        """
+
+    @property
+    def n_runs(self) -> int:
+        """of all calls"""
+
+    @property
+    def n_quiet(self) -> int:
+        """of them, those that ended before time.end_s since nothing moved"""
+
+class ResultFolder:
+    """A folder of results, which come into it when they are complete."""
+
+    def __init__(self, dir: str | os.PathLike, work: str) -> None:
+        """work: only unfinished work of this kind is gone on with."""
+
+    @property
+    def unfinished(self) -> pathlib.Path:
+        """where the work goes on"""
+
+    @property
+    def state(self) -> pathlib.Path:
+        """what going on needs, no result"""
+
+    def require_empty(self, overwrite: bool, resumes: bool) -> None: ...
+
+    def begin_or_resume(self) -> None: ...
+
+    def publish(self) -> None: ...
+
+    def abandon(self) -> None: ...
 
 class Criterion(enum.Enum):
     static_ratio = 0

@@ -481,6 +481,24 @@ def spread_at_equal_x(series: Iterable[Series], *, bins: int = 20) -> _core.Spre
         return _core.spread_at_equal_x(as_series(series), n)
 
 
+def ratio_at_equal_x(a: Series, b: Series, *, bins: int = 20) -> _core.Ratio:
+    """Ratio of the medians of y, a over b, two pairs (x, y), in bins of x as for spread_at_equal_x."""
+    n = whole(bins, "bins", least=1)
+    with refusing():
+        return _core.ratio_at_equal_x(as_series([a, b]), n)
+
+
+def falls_while_rises(
+    s_m: ArrayLike, falling: ArrayLike, rising: ArrayLike, *, min_length_m: float = 5e-3
+) -> np.ndarray:
+    """Lengths of the stretches of a path over which one quantity falls while another rises, by smoothed
+    slopes. s_m: ascending [points]; points where a quantity is NaN are left out."""
+    arrays = array(s_m, "s_m"), array(falling, "falling"), array(rising, "rising")
+    length = number(min_length_m, "min_length_m", least=0)
+    with refusing():
+        return _core.falls_while_rises(*arrays, length)
+
+
 def rank_correlation(x: ArrayLike, y: ArrayLike) -> float:
     """Spearman's, of pairs that are finite; NaN for fewer than three or no spread."""
     pair = array(x, "x"), array(y, "y")

@@ -11,6 +11,7 @@ namespace nb = nanobind;
 
 void bind_errors(nb::module_& module);
 void bind_cases(nb::module_& module);
+void bind_batch(nb::module_& module);
 void bind_observers(nb::module_& module);
 void bind_compose(nb::module_& module);
 void bind_fronts(nb::module_& module);
