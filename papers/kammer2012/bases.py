@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What remains of the paper's directionality, which its rigid base explains, and of its energy criterion when the
-base is deformable, down to a base of the plate's own material.
+"""What remains of the paper's directionality, which its rigid base explains, and of its energy criterion when
+the base is deformable, down to a base of the plate's own material.
 
     python papers/kammer2012/bases.py -o DIR [--quick]
 
@@ -20,12 +20,14 @@ from typing import Any
 import numpy as np
 import slipfront
 from analysis import cell, fit_json, number, write_json
-from cases import QUICK, Run, paper_cases
 from commands import Progress, parser_of, run_command
 from events import BINS, CRITERIA, Collapse, Event, event_of, joined, median
 from main_fronts import MainFront, collapse_without_tails, first_front, main_fronts
 
-# The plate's own material, aluminium, steel, and the rigid plane: E, nu, rho at room temperature of handbooks.
+from cases import QUICK, Run, paper_cases
+
+# The plate's own material, aluminium, steel, and the rigid plane: E, nu, rho at room temperature of
+# handbooks.
 BASES: dict[str, tuple[float, float, float] | None] = {
     "PMMA": (2.6e9, 0.37, 1200),
     "aluminium": (70e9, 0.33, 2700),
@@ -48,8 +50,8 @@ def tilt_factor(base: str) -> float:
 
 
 def runs_on(base: str, quick: bool) -> list[Run]:
-    """The paper's four events on a base: a body as high and wide as the plate, held at its bottom. The tilt is
-    larger by the share of compression that the base takes, so that the nominal pressure is the paper's."""
+    """The paper's four events on a base: a body as high and wide as the plate, held at its bottom. The tilt
+    is larger by the share of compression that the base takes, so that the nominal pressure is the paper's."""
     changes: dict[str, Any] = {
         "output.snapshot_times_s": [],
         "output.history_interval_s": 1e-5,
@@ -184,9 +186,17 @@ def base_row(found: dict[str, Any]) -> list[Any]:
 def point_rows(on: OnBase) -> list[list[Any]]:
     """Of bases_points.csv."""
     return [
-        [on.name, m.event.name, m.front.direction, f"{x:.10g}", float(v / m.event.c_L), *map(float, rest), int(tail)]
+        [
+            on.name,
+            m.event.name,
+            m.front.direction,
+            f"{x:.10g}",
+            float(v / m.event.c_L),
+            *map(float, others),
+            int(tail),
+        ]
         for m in on.mains
-        for x, v, *rest, tail in zip(
+        for x, v, *others, tail in zip(
             m.points.x_m,
             m.points.v_m_per_s,
             m.points.dynamic_ratio,
@@ -195,7 +205,7 @@ def point_rows(on: OnBase) -> list[list[Any]]:
             m.in_tail,
             strict=True,
         )
-    ]  # fmt: skip
+    ]
 
 
 def lines_of(bases: list[dict[str, Any]]) -> list[str]:

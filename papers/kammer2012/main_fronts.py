@@ -43,15 +43,16 @@ def starts_the_event(event: Event, front: Front) -> bool:
 def first_front(event: Event, direction: int) -> Front | None:
     """The longest front in a direction that starts at its event's nucleation or trigger. In a triggered
     event: that starts in the trigger zone or in the margin beyond it, where points do not count. In any
-    other: that starts within NUCLEATION_REACH_M of the first onset. Fronts in the wake of others, and those that
-    nucleate ahead of them, are none."""
+    other: that starts within NUCLEATION_REACH_M of the first onset. Fronts in the wake of others, and those
+    that nucleate ahead of them, are none."""
     return longest(f for f in event.fronts if f.direction == direction and starts_the_event(event, f))
 
 
 def counted_points(event: Event, front: Front) -> Front:
     """From beyond the trigger zone and its margin, or NUCLEATION_REACH_M from where a front nucleated by
     itself, to the front's end, or to before the first point from which V_tip stays below SLOW_SHARE c_L: is
-    nowhere defined and above that again. A slow stretch behind which the front is fast again is part of it."""
+    nowhere defined and above that again. A slow stretch behind which the front is fast again is part of
+    it."""
     v, slow = front.v_m_per_s, SLOW_SHARE * event.c_L
     fast = np.flatnonzero(v >= slow)
     behind = fast[-1] + 1 if fast.size else 0
