@@ -630,16 +630,6 @@ def read_run(folder: Path, read_its_history: HistoryReader = read_history) -> Ru
     )
 
 
-def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Measured points (t_s / p_s, V_tip / c_L) from the columns static_ratio and v_over_c_L or v_m_per_s."""
-    table = read_table(file, by_hand=True)
-    if "v_over_c_L" in table.header:
-        return table.numbers("static_ratio"), table.numbers("v_over_c_L")
-    if "v_m_per_s" in table.header:
-        return table.numbers("static_ratio"), table.numbers("v_m_per_s") / c_L_m_per_s
-    raise DataError(f"{file}: no column 'v_over_c_L' or 'v_m_per_s'")
-
-
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.read",

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from slipfront.figures.balance import TERMS
-from slipfront.figures.criteria import HIGHEST_V, LARGEST_RISE
 from slipfront.figures.main_fronts import away_from_trigger, counted, drawn_fronts, main_fronts, start
 from slipfront.figures.style import DIRECTION_COLOURS
 from slipfront.files import is_number, read_table
@@ -23,6 +22,10 @@ from slipfront.report.setup import is_uniform
 from slipfront.units import quantity
 
 WAVES = ("c_L", "c_S", "c_R")
+HIGHEST_V = (
+    3.0  # over c_L: the axis ends there at the latest, as the speed diverges where fronts nucleate or meet
+)
+LARGEST_RISE = 5.0  # of the energy as well, where the stored energy vanishes
 MOST_FRAMES = 40
 STRIPED = (
     "damping_work",

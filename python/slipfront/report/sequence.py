@@ -11,7 +11,6 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
-from slipfront.figures.report import formatted, table
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
@@ -22,6 +21,7 @@ from slipfront.report.page import Page, facts_table, plot, section, warnings_lis
 from slipfront.report.run import MOST_NODES, MOST_TIMES, navigation, program_words, sessions_words, thin_run
 from slipfront.report.sketch import sketch
 from slipfront.report.study import MOST_ROWS
+from slipfront.report.tables import formatted, table
 from slipfront.units import quantity, unit_of
 
 is_kind = is_sequence  # of the folders of `slipfront report`
