@@ -105,6 +105,11 @@ def ratio(numerator: np.ndarray, denominator: np.ndarray) -> np.ndarray:
     return out
 
 
+def even(n: int, most: int) -> np.ndarray:
+    """At most so many of n, the first and the last among them."""
+    return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
+
+
 def median(values: np.ndarray) -> float:
     """Of those that are defined; NaN without any."""
     known = values[np.isfinite(values)]

@@ -20,10 +20,10 @@ from matplotlib.figure import Figure
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, command_to_draw, write_results
-from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
+from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
-from slipfront.read import read_place
+from slipfront.read import even, read_place
 
 LOCAL, GLOBAL, PREDICTED = "#0072b2", "#d55e00", "#000000"
 MOST_ROWS, MOST_NODES, MOST_LABELS = 1200, 400, 24  # of all phases

@@ -10,11 +10,11 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import to_hex
 
-from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
+from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
-from slipfront.read import STATUSES, Place, entry, is_sequence, read_place
+from slipfront.read import STATUSES, Place, entry, even, is_sequence, read_place
 from slipfront.report import setup
 from slipfront.report.numbers import Unit, listed, packed_bytes, unit
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
