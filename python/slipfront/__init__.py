@@ -14,22 +14,16 @@ from slipfront.errors import NEEDS_MODULE
 if TYPE_CHECKING:
     from slipfront._core import BatchEvent as BatchEvent
     from slipfront._core import Body as Body
-    from slipfront._core import Claim as Claim
-    from slipfront._core import Collapse as Collapse
     from slipfront._core import ExponentialFit as ExponentialFit
     from slipfront._core import Info as Info
     from slipfront._core import Interface as Interface
     from slipfront._core import InterfaceState as InterfaceState
     from slipfront._core import Mesh as Mesh
-    from slipfront._core import Outcome as Outcome
     from slipfront._core import Rupture as Rupture
     from slipfront._core import Stepper as Stepper
     from slipfront._core import WaveSpeeds as WaveSpeeds
     from slipfront._core import WellPosedness as WellPosedness
     from slipfront.batch import Batch as Batch
-    from slipfront.claims import collapse as collapse
-    from slipfront.claims import outcome as outcome
-    from slipfront.claims import scorecard as scorecard
     from slipfront.contour import ContourIntegral as ContourIntegral
     from slipfront.contour import contour_integral as contour_integral
     from slipfront.errors import BlowUpError as BlowUpError
@@ -76,22 +70,16 @@ if TYPE_CHECKING:
 _PLACES = {
     "BatchEvent": "_core",
     "Body": "_core",
-    "Claim": "_core",
-    "Collapse": "_core",
     "ExponentialFit": "_core",
     "Info": "_core",
     "Interface": "_core",
     "InterfaceState": "_core",
     "Mesh": "_core",
-    "Outcome": "_core",
     "Rupture": "_core",
     "Stepper": "_core",
     "WaveSpeeds": "_core",
     "WellPosedness": "_core",
     "Batch": "batch",
-    "collapse": "claims",
-    "outcome": "claims",
-    "scorecard": "claims",
     "ContourIntegral": "contour",
     "contour_integral": "contour",
     "BlowUpError": "errors",

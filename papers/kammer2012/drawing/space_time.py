@@ -11,15 +11,15 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import DRAWN_LENGTH_M, drawn_fronts, start
-from slipfront.figures.results import Results
 from slipfront.read import Run
 
+from drawing import paper_style
+from drawing.results import Results
+
 RATE_RANGE_M_PER_S = (0.1, 30.0)
-OPEN_COLOUR = "0.8"
 WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
 
 
@@ -46,17 +46,6 @@ def draw_waves(ax: Axes, run: Run) -> None:
             )
 
 
-def cell_edges(x: np.ndarray) -> np.ndarray:
-    """Borders of the cells around ascending points, half-way between them."""
-    half = 0.5 * np.diff(x)
-    return np.concatenate([[x[0] - half[0]], x[:-1] + half, [x[-1] + half[-1]]])
-
-
-def draw_front(ax: Axes, x: np.ndarray, time: np.ndarray, colour: str, gid: str) -> None:
-    """The onsets along a front, outlined: its colour is seen on any slip rate."""
-    ax.plot(x, time, color=colour, linewidth=1.0, path_effects=style.outlined("white", 2.2), gid=gid)
-
-
 def front_handles(colours: dict[int, str]) -> list[Artist]:
     """Legend entries of fronts by their direction; one for all where the colours are the same."""
     look: style.Look = {"linewidth": 1.2}
@@ -68,7 +57,7 @@ def front_handles(colours: dict[int, str]) -> list[Artist]:
 
 def add_legend(figure: Figure, colours: dict[int, str]) -> None:
     """Above the axes: wave speeds under fronts and the open contact."""
-    upper = [*front_handles(colours), Patch(facecolor=OPEN_COLOUR, label="contact open")]
+    upper = [*front_handles(colours), Patch(facecolor=style.OPEN_COLOUR, label="contact open")]
     upper += [Line2D([], [], linestyle="none", label="")] * (len(WAVES) - len(upper))
     lower = [
         Line2D([], [], color="0.25", linestyle=line, linewidth=0.6, label=rf"$c_\mathrm{{{wave[-1]}}}$")
@@ -87,25 +76,25 @@ def space_time(results: Results, name: str) -> Drawing:
     # A floor below the range: the logarithm of zero would be drawn as open.
     rate = np.maximum(np.abs(history.slip_rate_m_per_s), 0.1 * RATE_RANGE_M_PER_S[0])
     image = ax.pcolorfast(
-        style.mm(cell_edges(history.x_m)),
-        1e6 * cell_edges(history.time_s),
+        style.mm(style.cell_edges(history.x_m)),
+        1e6 * style.cell_edges(history.time_s),
         np.ma.masked_where(history.p_Pa <= 0, rate),
-        cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=OPEN_COLOUR),
+        cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=style.OPEN_COLOUR),
         norm=LogNorm(*RATE_RANGE_M_PER_S),
         gid="rate",
     )
     draw_waves(ax, run)
-    event = style.EVENT_STYLES[name]
+    event = paper_style.EVENT_STYLES[name]
     fronts = drawn_fronts(run)
     for front in fronts:
         colour = event.front(front.direction).colour
-        draw_front(ax, style.mm(front.x_m), 1e6 * front.onset_s, colour, f"{name}:{front.id}")
+        style.draw_front(ax, style.mm(front.x_m), 1e6 * front.onset_s, colour, f"{name}:{front.id}")
     style.x_axis(ax, run)
     ax.set(ylabel="$t$ (µs)", ylim=(1e6 * history.time_s[0], 1e6 * history.time_s[-1]))
     ways = sorted({front.direction for front in fronts})
     add_legend(figure, {way: event.front(way).colour for way in ways})
     figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="max", pad=0.02, aspect=30)
-    label = style.EVENT_STYLES[name].label.replace("$\\mu_k", "μ<sub>k</sub>").replace("$", "")
+    label = paper_style.EVENT_STYLES[name].label.replace("$\\mu_k", "μ<sub>k</sub>").replace("$", "")
     return Drawing(
         f"space_time_{name}",
         figure,

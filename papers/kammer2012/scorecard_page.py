@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Renews the table of papers/kammer2012/scorecard.md from a reproduction's scorecard.json; the text stays.
+"""Renews the table of scorecard.md from a reproduction's scorecard.json; the text stays.
 
 A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations
 are there where `slipfront reproduce --sensitivity` has written them."""
@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from shared import renew_page, renew_tables
+from slipfront.pages import Tables, command_to_renew, table, tables_of
 
 VERDICTS = {True: "holds", False: "**does not hold**", None: "not tested"}
 
@@ -40,30 +40,30 @@ def how(row: dict[str, Any]) -> str:
     return f"{row['how']}. Instead of {row['second_test_of']}: {row['why']}" if "why" in row else row["how"]
 
 
-def table(scorecard: list[dict[str, Any]]) -> str:
+def tables(scorecard: list[dict[str, Any]]) -> Tables:
     judges = {
         row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]
     }
     variations = variations_of(scorecard)
     header = ["id", "claim", "our figure", "verdict", *variations.values(), "test"]
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    for row in scorecard:
-        cells = (
+    rows = [
+        [
             row["id"],
             f"{row['claim']} ({row['paper']})",
             row["measured"],
             verdict_of(row, judges),
             *(moves(row, key) for key in variations),
             how(row),
-        )
-        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return "\n".join(lines) + "\n"
+        ]
+        for row in scorecard
+    ]
+    return {"table": table(header, rows)}
 
 
-def write(results: Path, page: Path) -> None:
-    file = results / "scorecard.json"
-    renew_tables(file, page, "a scorecard", lambda scorecard: {"table": table(scorecard)})
+def write(results: Path, _: Path) -> Tables:
+    return tables_of(results / "scorecard.json", "a scorecard", tables)
 
 
 if __name__ == "__main__":
-    sys.exit(renew_page(__file__, __doc__, "slipfront reproduce", "papers/kammer2012/scorecard.md", write))
+    page = Path(__file__).with_name("scorecard.md")
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront reproduce"))

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from matplotlib.axes import Axes
+from slipfront.figures.style import Look
 
-from slipfront.figures.style import TIP_MARKER, Look
+from drawing.paper_style import TIP_MARKER
 
 N_NODES = 6
 

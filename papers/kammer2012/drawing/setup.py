@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
-
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import start
-from slipfront.figures.results import HIGH_MU_K, Results
 from slipfront.files import DataError
 from slipfront.read import Fields, Run
+
+from drawing import paper_style
+from drawing.results import HIGH_MU_K, Results
 
 NO_FIELDS = "no snapshots (fields.vtkhdf)"
 GRID_LINES = 40  # about as many mesh lines across the plate stay readable
@@ -166,7 +167,7 @@ def draw_plate(ax: Axes, run: Run) -> int | None:
     dimension(ax, (width + gap, 0), (width + gap, height), f"$h = {height:g}$ mm", rotation=90)
     where = start(run)
     if where is not None:
-        style_of = style.EVENT_STYLES[run.name]
+        style_of = paper_style.EVENT_STYLES[run.name]
         ax.add_patch(
             Circle(
                 (1e3 * where[0], 0),
@@ -201,7 +202,7 @@ def draw_static_ratio(ax: Axes, run: Run) -> None:
             gid="maximum",
         )
     style.x_axis(ax, run)
-    ax.set_ylabel(style.STATIC_LABEL)
+    ax.set_ylabel(paper_style.STATIC_LABEL)
     finite = run.static_ratio[np.isfinite(run.static_ratio)]
     ax.set_ylim(0, 1.15 * max(mu_s, np.max(finite, initial=0.0)))
 
@@ -222,7 +223,7 @@ def draw_friction_law(ax: Axes, runs: list[Run]) -> None:
     v = np.linspace(0, 4 * slowest, 300)
     for run, line in zip(runs, ("-", (0, (4.5, 1.8))), strict=True):
         mu_k = run.parameter("friction.mu_k")
-        colour = style.EVENT_STYLES[run.name].colour
+        colour = paper_style.EVENT_STYLES[run.name].colour
         mu = friction_law(run, v)
         ax.plot(v, mu, color=colour, linestyle=line, gid=run.name)
         ax.annotate(

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what the energy criterion orders, and renews the table of papers/kammer2012/energy-criterion.md."""
+"""Draws what the energy criterion orders, and renews the table of energy-criterion.md."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,13 +10,16 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from drawing import paper_style
+from drawing.criteria import tail
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from shared import DataError, between_marks, checked, expecting, read_result, renew, run, write_figure
 from slipfront.figures import style
-from slipfront.figures.main_fronts import counted, main_fronts, tail
-from slipfront.files import read_table
+from slipfront.figures.drawing import write_figure
+from slipfront.figures.main_fronts import counted, main_fronts
+from slipfront.files import DataError, read_table
 from slipfront.folder import result_file
+from slipfront.pages import Tables, command_to_renew, expecting, read_result, table
 from slipfront.read import Front, Run, read_run
 
 AMOUNTS = ("5", "10", "20", "40", "80")
@@ -136,7 +138,7 @@ def row_without(others: list[MainFront]) -> list[str]:
     ]
 
 
-def table(others: list[MainFront], lefts: dict[str, MainFront]) -> str:
+def tables(others: list[MainFront], lefts: dict[str, MainFront]) -> Tables:
     header = [
         "main fronts",
         "left: maximum",
@@ -146,9 +148,7 @@ def table(others: list[MainFront], lefts: dict[str, MainFront]) -> str:
         "spread in these",
     ]
     rows = [row(trigger, others, left) for trigger, left in lefts.items()]
-    rows.append(row_without(others))
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    return "\n".join([*lines, *("| " + " | ".join(cells) + " |" for cells in rows)]) + "\n"
+    return {"table": table(header, [*rows, row_without(others)])}
 
 
 def check_against(scorecard: Path, others: list[MainFront], left: MainFront) -> None:
@@ -197,7 +197,7 @@ def draw_over_rise(
                 front.front.energy_rise[part], front.speed[part], "o", color=colour,
                 markerfacecolor=face, markersize=2, markeredgewidth=0.4,
             )  # fmt: skip
-    ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL, xscale="log", xlim=(3e-3, 5))
+    ax.set(xlabel=paper_style.ENERGY_LABEL, ylabel=style.V_LABEL, xscale="log", xlim=(3e-3, 5))
     ax.legend(
         loc="upper right",
         handles=[
@@ -230,7 +230,7 @@ def draw_speed_lengths(ax: Axes, results: Path) -> None:
             )
             part = front.counts
             ax.plot(front.front.energy_rise[part], front.speed[part], linestyle=line, color=colour)
-    ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL, xscale="log")
+    ax.set(xlabel=paper_style.ENERGY_LABEL, ylabel=style.V_LABEL, xscale="log")
     ax.axhline(1, **style.REFERENCE)
     ax.legend(
         loc="upper right",
@@ -245,8 +245,7 @@ def draw_speed_lengths(ax: Axes, results: Path) -> None:
     )
 
 
-def write(results: Path, page: Path, picture: Path) -> None:
-    checked(picture)
+def write(results: Path, picture: Path) -> Tables:
     with expecting("results of a reproduction", results), matplotlib.rc_context(style.RC):
         others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
         lefts = {
@@ -265,21 +264,11 @@ def write(results: Path, page: Path, picture: Path) -> None:
         draw_speed_lengths(axes[1, 1], results)
         for ax, letter in zip(axes.flat, "abcd", strict=True):
             ax.set_title(f"({letter})", loc="left")
-        content = table(others, lefts)
-
-    def change(text: str) -> str:
-        changed = between_marks(page, text, "table", content)
-        with matplotlib.rc_context(style.RC):
-            write_figure(picture, figure)
-        return changed
-
-    renew(page, change)
+        made = tables(others, lefts)
+        write_figure(picture, figure)
+    return made
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path, help="output folder of `slipfront reproduce`")
-    parser.add_argument("page", type=Path, help="papers/kammer2012/energy-criterion.md")
-    parser.add_argument("picture", type=Path, help="papers/kammer2012/figures/energy_criterion.png")
-    options = parser.parse_args()
-    sys.exit(run(__file__, lambda: write(options.results, options.page, options.picture)))
+    page = Path(__file__).with_name("energy-criterion.md")
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront reproduce"))

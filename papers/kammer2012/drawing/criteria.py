@@ -12,22 +12,23 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-
-from slipfront.figures import sketch, style
+from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import (
     DRAWN_LENGTH_M,
     NUCLEATION_M,
     SLOW_OVER_C_L,
-    TAIL_M,
     away_from_trigger,
     counted,
     drawn_fronts,
     main_fronts,
-    tail,
+    slow_end,
 )
-from slipfront.figures.results import HIGH_MU_K, Fit, MainFrontsFit, Results
 from slipfront.read import Front, Run
+from slipfront.report.run_data import HIGHEST_V, LARGEST_RISE
+
+from drawing import paper_style, sketch
+from drawing.results import HIGH_MU_K, Fit, MainFrontsFit, Results
 
 SELECTION = (
     "Strong: main fronts, the longest in each direction that starts at the event's nucleation or trigger, to "
@@ -36,8 +37,8 @@ SELECTION = (
     f"{1e3 * NUCLEATION_M:g} mm around a spontaneous nucleation. Thin and light: their other nodes, and "
     f"other fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm."
 )
-HIGHEST_V = 3.0  # the axis ends there at the latest: the speed diverges where fronts nucleate or meet
-LARGEST_RISE = 5.0  # the relative energy rise as well, where the stored energy vanishes
+WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": "-", "c_R": ":"}
+TAIL_M = 20e-3  # the last stretch before a front is over, where the paper sees fronts leave its criterion
 SHORTEST_FALL_M = 5e-3  # a stretch over which V_tip falls while t_d / p_d rises
 FIT_COLOUR = "#7b3294"
 
@@ -46,6 +47,17 @@ Measure = Callable[[Front], np.ndarray]
 
 def speed(run: Run) -> Measure:
     return lambda front: front.v_tip_m_per_s / run.c_L_m_per_s
+
+
+def tail(run: Run, front: Front) -> np.ndarray:
+    """Whether a main front's nodes count and lie in the last TAIL_M of those that do. [points]
+
+    A front that may still run when the record ends has no such end.
+    """
+    count = counted(run, front)
+    if slow_end(run, front) == len(count) and run.end_of(front) == "record_end":
+        return np.full(len(count), False)
+    return count & (np.abs(front.x_m - front.x_m[count][-1]) <= TAIL_M * (1 + 1e-9))
 
 
 def draw_fronts(
@@ -71,17 +83,17 @@ def draw_fronts(
             return np.where(counts, x(front), np.nan), np.where(counts, y(front), np.nan)
 
         if front not in main:
-            style.draw_pale(ax, run, front, *where(shown), "other")
+            paper_style.draw_pale(ax, run, front, *where(shown), "other")
             continue
         count = counted(run, front)
         if not count[shown].all():
-            style.draw_pale(ax, run, front, *where(widened(~count)), "weak")
+            paper_style.draw_pale(ax, run, front, *where(widened(~count)), "weak")
         if as_points:
             end = tail(run, front)
-            style.draw_points(ax, run, front, *where(count & ~end))
-            style.draw_points(ax, run, front, *where(end), "tail")
+            paper_style.draw_points(ax, run, front, *where(count & ~end))
+            paper_style.draw_points(ax, run, front, *where(end), "tail")
         else:
-            style.draw_line(
+            paper_style.draw_line(
                 ax, run, front, *where(count), lines[front.direction] if lines is not None else None
             )
 
@@ -97,7 +109,7 @@ def widened(part: np.ndarray) -> np.ndarray:
 def speed_over_static_ratio(ax: Axes, runs: list[Run]) -> None:
     for run in runs:
         draw_fronts(ax, run, lambda front: front.static_ratio, speed(run))
-    ax.set(xlabel=style.STATIC_LABEL, ylabel=style.V_LABEL)
+    ax.set(xlabel=paper_style.STATIC_LABEL, ylabel=style.V_LABEL)
 
 
 def drawn_points(ax: Axes) -> np.ndarray:
@@ -129,7 +141,7 @@ def finish(ax: Axes, run: Run) -> str:
     """
     points = drawn_points(ax)
     ax.set_ylim(0, np.clip(1.08 * largest(ax, 1), 1.15, HIGHEST_V))
-    style.wave_speed_lines(ax, run)
+    style.wave_speed_lines(ax, run, run.c_L_m_per_s, WAVES)
     beyond = ((points[:, 1] > ax.get_ylim()[1]) | (points[:, 0] > ax.get_xlim()[1])).sum()
     return f" {beyond} of {len(points)} points lie outside the axes." if beyond else ""
 
@@ -140,7 +152,7 @@ def static_ratio_mu_k(results: Results) -> Drawing:
     ax = figure.subplots()
     lines: dict[int, style.Line] = {-1: (0, (4.5, 1.8)), 1: "-"}
     draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), lines)
-    event = style.EVENT_STYLES[run.name]
+    event = paper_style.EVENT_STYLES[run.name]
     handles = [
         Line2D(
             [],
@@ -148,12 +160,12 @@ def static_ratio_mu_k(results: Results) -> Drawing:
             color=event.front(way).colour,
             linestyle=lines[way],
             marker=event.marker,
-            markerfacecolor=style.fill(event, way),
+            markerfacecolor=paper_style.fill(event, way),
             label=words,
         )
         for way, words in ((1, "front along the shear"), (-1, "front against the shear"))
     ]
-    handles.append(style.pale_handle(event.colour))
+    handles.append(paper_style.pale_handle(event.colour))
     measured = "No file of experimental data was given, so none are drawn."
     if results.experiment is not None:
         x, y = results.experiment
@@ -163,7 +175,7 @@ def static_ratio_mu_k(results: Results) -> Drawing:
     else:
         place: style.Look = {"xycoords": "axes fraction", "va": "bottom", "color": "0.45"}
         ax.annotate("no experimental data given", (0.015, 0.02), **place)
-    ax.set(xlabel=style.STATIC_LABEL, ylabel=style.V_LABEL)
+    ax.set(xlabel=paper_style.STATIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, run)
     style.legend_below(figure, handles, 3 if results.experiment is None else 4)
     return Drawing(
@@ -185,7 +197,7 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
         color="0.6",
         linewidth=1.8,
         solid_capstyle="butt",
-        label=style.STATIC_LABEL + ", all events",
+        label=paper_style.STATIC_LABEL + ", all events",
         gid="static",
         zorder=1,
     )
@@ -195,10 +207,15 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
     ax.axhline(mu_s, gid="mu_s", **style.REFERENCE)
     style.name_level(ax, mu_s, r"$\mu_s$")
     style.x_axis(ax, reference)
-    ax.set_ylabel(style.DYNAMIC_LABEL)
+    ax.set_ylabel(paper_style.DYNAMIC_LABEL)
     ax.set_ylim(0, max(ax.get_ylim()[1], 1.12 * mu_s))
     sketch.dynamic_ratio(ax.inset_axes((0.16, 0.035, 0.5, 0.3)))
-    handles = [*style.event_handles(results.events), *style.fill_handles(), style.pale_handle(), static]
+    handles = [
+        *paper_style.event_handles(results.events),
+        *paper_style.fill_handles(),
+        paper_style.pale_handle(),
+        static,
+    ]
     style.legend_below(figure, handles, 3)
     return Drawing(
         "fig4_dynamic_ratio",
@@ -231,9 +248,11 @@ def underlay_falls(ax: Axes, runs: list[Run]) -> list[Line2D]:
             part = falls(run, front)
             found = found or bool(part.any())
             x, y = (np.where(part, values, np.nan) for values in (front.dynamic_ratio, speed(run)(front)))
-            ax.plot(x, y, gid=style.front_gid(run, front, "falls"), zorder=0.8, **look)
+            ax.plot(x, y, gid=paper_style.front_gid(run, front, "falls"), zorder=0.8, **look)
     return (
-        [Line2D([], [], label=f"{style.V_NAME} falls, {style.DYNAMIC_LABEL} rises", **look)] if found else []
+        [Line2D([], [], label=f"{style.V_NAME} falls, {paper_style.DYNAMIC_LABEL} rises", **look)]
+        if found
+        else []
     )
 
 
@@ -242,13 +261,13 @@ def dynamic_criterion(results: Results) -> Drawing:
     ax = figure.subplots()
     for run in results.events:
         draw_fronts(ax, run, lambda front: front.dynamic_ratio, speed(run))
-    ax.set(xlabel=style.DYNAMIC_LABEL, ylabel=style.V_LABEL)
+    ax.set(xlabel=paper_style.DYNAMIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, results.events[0])
     reversed_trend = underlay_falls(ax, results.events)
     handles = [
-        *style.event_handles(results.events),
-        *style.fill_handles(),
-        style.pale_handle(),
+        *paper_style.event_handles(results.events),
+        *paper_style.fill_handles(),
+        paper_style.pale_handle(),
         *reversed_trend,
     ]
     style.legend_below(figure, handles, 3)
@@ -332,16 +351,16 @@ def energy(results: Results) -> Drawing:
         fits.append(draw_own_fit(ax, results, results.fit, r))
     if results.fit is not None and results.main_fronts_fit is not None:
         fits.append(draw_main_fronts_fit(ax, results.main_fronts_fit, r))
-    ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL)
+    ax.set(xlabel=paper_style.ENERGY_LABEL, ylabel=style.V_LABEL)
     ax.set_xlim(0, right)
     outside = finish(ax, results.events[0])
     sketch.energies(ax.inset_axes((0.4, 0.66, 0.57, 0.3)))
-    events = style.event_handles(results.events)
+    events = paper_style.event_handles(results.events)
     for handle in events:
         handle.set_linestyle("none")
         handle.set_markersize(4)
     tails = Line2D([], [], color="0.6", linestyle="none", marker="o", label=f"pale: last {1e3 * TAIL_M:g} mm")
-    handles = [*events, tails, *style.fill_handles(), style.pale_handle(), *fits]
+    handles = [*events, tails, *paper_style.fill_handles(), paper_style.pale_handle(), *fits]
     style.legend_below(figure, handles, 3)
     return Drawing(
         "fig6_energy",

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from slipfront.figures.study import Study, read_studies
-from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table
+from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table, read_table
 from slipfront.folder import belongs, located, result_file
-from slipfront.read import Run, read_experiment, read_run
+from slipfront.read import Run, read_run
+
+from drawing.study import Study, read_studies
 
 EVENTS = ("left", "spontaneous", "right")  # the three events of one initial state
 FITTED_CLAIM = "C18"  # the energy criterion
@@ -32,6 +32,9 @@ class Fit:
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         return self.a + self.b * np.exp(-self.c * np.sqrt(r))
+
+
+PAPER_FIT, PAPER_BAND = Fit(0.76, 1.80, 3.05), 0.07
 
 
 @dataclass(frozen=True)
@@ -149,6 +152,16 @@ def read_timings(file: Path) -> list[tuple[str, float]]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) and "part" in row for row in rows):
         raise DataError(f"{file}: not a list of parts")
     return [(str(row["part"]), number(file, row, "wall_s")) for row in rows]
+
+
+def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Measured points (t_s / p_s, V_tip / c_L) from the columns static_ratio and v_over_c_L or v_m_per_s."""
+    table = read_table(file, by_hand=True)
+    if "v_over_c_L" in table.header:
+        return table.numbers("static_ratio"), table.numbers("v_over_c_L")
+    if "v_m_per_s" in table.header:
+        return table.numbers("static_ratio"), table.numbers("v_m_per_s") / c_L_m_per_s
+    raise DataError(f"{file}: no column 'v_over_c_L' or 'v_m_per_s'")
 
 
 def read_results(

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The paper's events on deformable bases: speeds at equal traction ratio and energy rise, tip pressure.
-
-usage: python -m slipfront.figures.bases PICTURE DIR, output folder of `slipfront study base`"""
+"""The paper's events on deformable bases: speeds at equal traction ratio and energy rise, tip pressure."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,16 +10,16 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
-
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.picture import command_to_draw, write_results
 from slipfront.files import Table, read_json_table, read_table
 from slipfront.folder import result_file
 
+from drawing import paper_style
+from drawing.results import PAPER_BAND, PAPER_FIT
+
 SUMMARY = "bases.json"
 POINTS = "bases_points.csv"
-PAPER = (0.76, 1.80, 3.05, 0.07)  # a, b, c and band of the paper's fit
 #: Fronts against and along the imposed shear.
 DIRECTIONS = {-1: ("against the shear", "#d55e00"), 1: ("along it", "#0072b2")}
 
@@ -52,10 +49,9 @@ def draw_points(ax: Axes, points: dict[str, np.ndarray], x: str, y: str, base: s
 
 def draw_paper(ax: Axes) -> tuple[Artist, ...]:
     """The paper's curve in its band; returns parts of a legend entry."""
-    a, b, c, band = PAPER
     rise = np.linspace(0, 2, 200)
-    curve = a + b * np.exp(-c * np.sqrt(rise))
-    ax.fill_between(rise, curve - band, curve + band, color="0.85", linewidth=0)
+    curve = PAPER_FIT(rise)
+    ax.fill_between(rise, curve - PAPER_BAND, curve + PAPER_BAND, color="0.85", linewidth=0)
     (line,) = ax.plot(rise, curve, color="0.3", linewidth=0.7, label="the paper's fit and band")
     return Patch(facecolor="0.85"), line
 
@@ -91,7 +87,9 @@ def draw(folder: Path) -> Drawing:
         row[0].set(ylabel=style.V_LABEL, ylim=(0, 3), xlim=(0, 1.3))
         row[1].set(ylabel=style.V_LABEL, ylim=(0, 3), xlim=(0, 2))
         row[2].set(ylabel="$p_r / p_s$", ylim=(0, 3), xlim=(0, 200))
-    for ax, label in zip(axes[-1], (style.DYNAMIC_LABEL, style.ENERGY_LABEL, "$x$ (mm)"), strict=True):
+    for ax, label in zip(
+        axes[-1], (paper_style.DYNAMIC_LABEL, paper_style.ENERGY_LABEL, "$x$ (mm)"), strict=True
+    ):
         ax.set_xlabel(label)
     handles = [
         axes[0, 0].plot([], [], "o", color=colour, markersize=2.5, label=f"fronts {name}")[0]
@@ -100,21 +98,3 @@ def draw(folder: Path) -> Drawing:
     tails = axes[0, 0].plot([], [], "x", color="0.4", markersize=2.5, label="last 20 mm before a front's end")
     style.legend_below(figure, [*handles, *tails, paper], 4)
     return Drawing("bases", figure, "")
-
-
-def write(picture: Path, folder: Path) -> list[str]:
-    return write_results(picture, folder, draw)
-
-
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.figures.bases",
-        "Draws what remains of the paper's direction and energy criterion on deformable bases.",
-        "`slipfront study base`",
-        write,
-        arguments,
-    )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -14,13 +14,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Annotation
 from matplotlib.transforms import blended_transform_factory
-
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import main_fronts
-from slipfront.figures.results import EVENTS, Results
-from slipfront.figures.study import Study, StudyPoint
 from slipfront.read import Run
+
+from drawing import paper_style
+from drawing.results import EVENTS, Results
+from drawing.study import Study, StudyPoint
 
 COLUMNS = 3
 CELL_MM = 45.0
@@ -59,9 +60,9 @@ NAMES = {
 # without which they would cover each other.
 FRONTS = (("left", 1, -0.033), ("spontaneous", -1, -0.011), ("spontaneous", 1, 0.011), ("right", -1, 0.033))
 SPREADS = (
-    ("t_s_over_p_s", style.STATIC_LABEL, "0.45", "D"),
-    ("t_d_over_p_d", style.DYNAMIC_LABEL, "#0072b2", "v"),
-    ("energy", style.ENERGY_LABEL, "#d55e00", "P"),
+    ("t_s_over_p_s", paper_style.STATIC_LABEL, "0.45", "D"),
+    ("t_d_over_p_d", paper_style.DYNAMIC_LABEL, "#0072b2", "v"),
+    ("energy", paper_style.ENERGY_LABEL, "#d55e00", "P"),
 )
 
 
@@ -92,7 +93,7 @@ def draw_paper_values(ax: Axes, results: Results, study: Study) -> None:
     values = paper_values(results, study)
     events = {index: [event for event in values if values[event] == index] for index in values.values()}
     for index, same in events.items():
-        colour = "0.75" if len(events) == 1 else style.EVENT_STYLES[same[0]].colour
+        colour = "0.75" if len(events) == 1 else paper_style.EVENT_STYLES[same[0]].colour
         alpha = 0.4 if len(events) == 1 else 0.2
         gid = "paper_value" if len(events) == 1 else f"paper_value:{','.join(same)}"
         ax.axvline(index, color=colour, linewidth=6, alpha=alpha, zorder=0.2, gid=gid)
@@ -107,7 +108,7 @@ def paper_value_handles(results: Results) -> list[Patch]:
         differing |= set(values) if len(set(values.values())) > 1 else set()
     for event in EVENTS:
         if event in differing:
-            look = style.EVENT_STYLES[event]
+            look = paper_style.EVENT_STYLES[event]
             handles.append(Patch(facecolor=look.colour, alpha=0.2, label=f"value of the {look.label} run"))
     return handles
 
@@ -159,12 +160,12 @@ def is_another(results: Results, point: StudyPoint, event: str, direction: int) 
 
 
 def front_look(event: str, direction: int) -> dict[str, Any]:
-    look = style.EVENT_STYLES[event]
+    look = paper_style.EVENT_STYLES[event]
     return {
         "color": look.front(direction).colour,
         "linestyle": look.front(direction).line,
         "marker": look.marker,
-        "markerfacecolor": style.fill(look, direction),
+        "markerfacecolor": paper_style.fill(look, direction),
         "linewidth": 0.8,
     }
 
@@ -298,7 +299,7 @@ def speeds(results: Results) -> Drawing:
     names = {-1: "against the shear", 1: "along the shear"}
     handles: list[Artist] = [
         handle(
-            style.EVENT_STYLES[event].label + (f", {names[way]}" if event == "spontaneous" else ""),
+            paper_style.EVENT_STYLES[event].label + (f", {names[way]}" if event == "spontaneous" else ""),
             markersize=3.0,
             **front_look(event, way),
         )

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The charts of `slipfront verify -o DIR`: theory as lines, the program's values as points.
 
-usage: python -m slipfront.figures.verification DIR FIGURES"""
+usage: python verification/figures.py DIR FIGURES"""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +14,8 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
 from slipfront import command
-from slipfront.figures.drawing import Drawing, guarded
+from slipfront.figures.drawing import Drawing
 from slipfront.figures.style import COLUMN_MM, RC, new_figure
 from slipfront.files import DataError, read_json_table
 from slipfront.folder import read_list, result_file
@@ -107,18 +105,17 @@ def draw_all(results: Path, figures: Path) -> list[str]:
     with command.publishing_into(figures) as folder, matplotlib.rc_context(RC):
         for file in files:
             drawing = draw(file)
-            png = guarded(file, partial(drawing.rendered, "png", Software=None))
-            (folder / f"{drawing.name}.png").write_bytes(png)
+            (folder / f"{drawing.name}.png").write_bytes(drawing.guarded_rendering(file, "png"))
     return [f"figures: {figures} ({len(files)})"]
 
 
 def main(results: Path, figures: Path) -> int:
-    return command.run("slipfront.figures", lambda: draw_all(results, figures))
+    return command.run("figures.py", lambda: draw_all(results, figures))
 
 
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="python -m slipfront.figures.verification",
+        prog="python verification/figures.py",
         description="Draws the charts of `slipfront verify -o DIR` as FIGURES/NAME.png.",
     )
     parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront verify`")

@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from shared import DataError, after_mark, expecting, read_result, read_text, run, write_pages
+from slipfront import command
+from slipfront.files import DataError, read_text
+from slipfront.pages import expecting, read_result, write_pages
 
 MARK = "<!-- numbers -->"
 MOST_ROWS = 8  # of a table; `slipfront verify` prints every check
@@ -61,7 +63,15 @@ def row_of(results: dict[str, Any], name: str) -> str:
     return f"| [{results['title']}]({name}) | {holding} of {len(results['checks'])} |"
 
 
-def write(results_dir: Path, pages: Path) -> None:
+def after_mark(page: Path, content: str) -> str:
+    """The page's text with all that follows its mark replaced."""
+    before, found, _ = read_text(page).partition(MARK)
+    if not found:
+        raise DataError(f"{page}: no line {MARK}")
+    return f"{before}{MARK}\n\n{content}"
+
+
+def write(results_dir: Path, pages: Path) -> list[str]:
     texts, rows = {}, []
     files = sorted(page for page in pages.glob("*.md") if page.stem != "README")
     if not files:
@@ -72,11 +82,12 @@ def write(results_dir: Path, pages: Path) -> None:
         with expecting("a file of `slipfront verify`", file):
             content = numbers(results)
             rows.append(row_of(results, page.name))
-        texts[page.name] = after_mark(page, read_text(page), MARK, content)
+        texts[page.name] = after_mark(page, content)
     index = pages / "README.md"
     table = "\n".join(["| problem | checks that hold |", "|---|---|", *rows]) + "\n"
-    texts[index.name] = after_mark(index, read_text(index), MARK, table)
+    texts[index.name] = after_mark(index, table)
     write_pages(pages, texts)
+    return []
 
 
 if __name__ == "__main__":
@@ -84,4 +95,4 @@ if __name__ == "__main__":
     parser.add_argument("results", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
     parser.add_argument("pages", type=Path, help="verification")
     options = parser.parse_args()
-    sys.exit(run(__file__, lambda: write(options.results, options.pages)))
+    sys.exit(command.run("pages.py", lambda: write(options.results, options.pages)))

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.main_fronts import TAIL_M
-from slipfront.figures.results import VARIATIONS, MainFrontsFit, Results
-from slipfront.figures.statements import STATEMENTS
-from slipfront.figures.studies import is_another, paper_values
-from slipfront.figures.study import SPREADS
 from slipfront.figures.style import COLUMN_MM, TEXT_MM
-from slipfront.files import is_number
+from slipfront.report.tables import formatted, front_cells, table, text
+
+from drawing.criteria import TAIL_M
+from drawing.results import VARIATIONS, MainFrontsFit, Results
+from drawing.statements import STATEMENTS
+from drawing.studies import is_another, paper_values
+from drawing.study import SPREADS
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #111; background: #fff; }
@@ -50,32 +51,6 @@ VERDICTS = {
 }
 USED_TO_CHOOSE = ("=", "open", "used to choose what the paper leaves open")
 STATEMENT_HEADER = ["The paper says", "This program", "", ""]
-
-
-def text(value: Any) -> str:
-    """A value of a JSON file for the page: floats to 4 digits, null as a dash."""
-    if value is None:
-        return "–"
-    return escape(f"{value:.4g}" if isinstance(value, float) else str(value))
-
-
-def formatted(value: Any, form: str, factor: float = 1.0) -> str:
-    """A number of a JSON file in a given form; null or none as a dash."""
-    return f"{factor * value:{form}}" if is_number(value) else "–"
-
-
-def table(
-    header: list[str], rows: list[list[str]], groups: list[tuple[str, int]] | None = None, kind: str = ""
-) -> str:
-    """Cells are pieces of HTML; one that starts with <td is taken as it is. Groups head several columns."""
-    head = "".join(f"<th>{h}</th>" for h in header)
-    body = "\n".join(
-        "<tr>" + "".join(c if c.startswith("<td") else f"<td>{c}</td>" for c in row) + "</tr>" for row in rows
-    )
-    above = "".join(f'<th colspan="{n}">{name}</th>' for name, n in groups or [])
-    head = (f"<tr>{above}</tr>" if above else "") + f"<tr>{head}</tr>"
-    opening = f'<table class="{kind}">' if kind else "<table>"
-    return f'<div class="scroll">{opening}\n<thead>{head}</thead>\n<tbody>\n{body}\n</tbody></table></div>'
 
 
 def is_used_to_choose(entry: dict[str, Any]) -> bool:
@@ -228,22 +203,12 @@ def spread_table(results: Results) -> str:
     )
 
 
-def front_row(event: str, f: dict[str, Any]) -> list[str]:
-    return [
-        escape(event),
-        text(f.get("id")),
-        {1: "to +x", -1: "to −x"}.get(f.get("direction", 0), "–"),
-        formatted(f.get("start_x_m"), ".1f", 1e3),
-        formatted(f.get("start_s"), ".1f", 1e6),
-        formatted(f.get("end_x_m"), ".1f", 1e3),
-        formatted(f.get("end_s"), ".1f", 1e6),
-        text(f.get("end")).replace("_", " "),
-        text(f.get("mode")),
-    ]
-
-
 def front_table(results: Results) -> str:
-    rows = [front_row(name, f) for name, run in results.runs.items() for f in run.info.get("fronts", [])]
+    rows = [
+        [escape(name), *front_cells(f)]
+        for name, run in results.runs.items()
+        for f in run.info.get("fronts", [])
+    ]
     header = ["Event", "Front", "Direction", "From (mm)", "at (µs)", "to (mm)", "at (µs)", "End", "Slip"]
     return table(header, rows)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Renews the tables of papers/kammer2012/open-choices.md from a study of the open choices; the text stays."""
+"""Renews tables and picture of open-choices.md from a study of the open choices; the text stays."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from shared import renew_page, renew_tables
+from drawing import open_choices
+from slipfront.figures.drawing import write_results
+from slipfront.pages import Tables, command_to_renew, table, tables_of
 
 PAGE_WIDTH = 120  # of the docs' lines
 #: Tests of claims that were not used to choose.
@@ -42,11 +44,6 @@ def range_of(values: list[Any]) -> str:
     """Of numbers the least and the largest."""
     is_range = len(values) == 2 and not any(isinstance(value, str) for value in values)
     return " to ".join(told(value) for value in values) if is_range else listed(values)
-
-
-def table(header: list[str], rows: list[list[str]]) -> str:
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def in_use(choice: dict[str, Any], values: dict[str, Any], choices: dict[str, dict[str, Any]]) -> bool:
@@ -220,18 +217,17 @@ def evidence(study: dict[str, Any]) -> str:
     return table(["left triggers", *(group["samples"] for group in groups)], rows)
 
 
-def tables(study: dict[str, Any]) -> dict[str, str]:
+def tables(study: dict[str, Any]) -> Tables:
     parts = {"choices": choices, "outcomes": outcomes, "evidence": evidence, "known": known, "meshes": meshes}
     return {name: part(study) for name, part in parts.items()}
 
 
-def write(results: Path, page: Path) -> None:
-    renew_tables(results / "open_choices.json", page, "a study of the open choices", tables)
+def write(results: Path, picture: Path) -> Tables:
+    made = tables_of(results / open_choices.SUMMARY, "a study of the open choices", tables)
+    write_results(picture, results, open_choices.draw)
+    return made
 
 
 if __name__ == "__main__":
-    sys.exit(
-        renew_page(
-            __file__, __doc__, "slipfront study open-choices", "papers/kammer2012/open-choices.md", write
-        )
-    )
+    page = Path(__file__).with_name("open-choices.md")
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront study open-choices"))

@@ -1,21 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of a reproduction of the paper: verdicts, its four runs to look into, figures and tables."""
+"""Pages of HTML to look into a reproduction, the open choices or the bases in a browser:
+
+    python papers/kammer2012/report.py DIR [-o FILE]
+
+writes one file, as `slipfront report` does of other results, that needs no network."""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import matplotlib
-
-from slipfront.figures import report as tables
-from slipfront.figures.__main__ import draw_all
-from slipfront.figures.criteria import FIT_COLOUR
-from slipfront.figures.results import Fit, Results, read_results
-from slipfront.figures.style import EVENT_STYLES
+from draw import draw_all
+from drawing import bases, open_choices
+from drawing import html as tables
+from drawing.criteria import FIT_COLOUR
+from drawing.paper_style import EVENT_STYLES
+from drawing.results import Fit, Results, read_results
 from slipfront.folder import belongs
 from slipfront.read import Front, Run
 from slipfront.report import run as single
+from slipfront.report.command import main
 from slipfront.report.page import Page, section, warnings_list, words
 from slipfront.report.run_data import (
     MEASURES,
@@ -25,6 +32,8 @@ from slipfront.report.run_data import (
     history_of,
     run_data,
 )
+from slipfront.report.study import PERCENT, Study, percent
+from slipfront.report.tables import formatted, table
 
 MOST_TIMES, MOST_NODES = 220, 220  # of each run, so that the page stays small
 FIGURE_DPI = 160  # as wide as the page
@@ -51,10 +60,6 @@ INTRODUCTION = (
     "frictional "
     "interfaces</i>, Tribology Letters 48, 27–32 (2012).</p>"
 )
-
-
-def is_kind(folder: Path) -> bool:
-    return belongs(folder / "scorecard.json")
 
 
 def label(name: str) -> str:
@@ -101,7 +106,7 @@ def runs_table(results: Results) -> str:
                 f"<code>slipfront report {folder}</code>",
             ]
         )
-    return tables.table(["Run", "Case", "End", "Fronts", "Warnings", "A page of its own"], rows)
+    return table(["Run", "Case", "End", "Fronts", "Warnings", "A page of its own"], rows)
 
 
 def run_list() -> str:
@@ -112,7 +117,7 @@ def run_list() -> str:
 def figures(results: Results) -> list[str]:
     with matplotlib.rc_context({"savefig.dpi": FIGURE_DPI}):
         drawings = draw_all(results)
-        return [tables.figure_html(d, results, d.rendered("png", Software=None)) for d in drawings]
+        return [tables.figure_html(d, results, d.rendered("png")) for d in drawings]
 
 
 def runs_parts(results: Results) -> list[str]:
@@ -129,7 +134,7 @@ def runs_parts(results: Results) -> list[str]:
     ]
 
 
-def page(folder: Path, _file: Path) -> Page:
+def reproduction(folder: Path, _file: Path) -> Page:
     results = read_results(folder, read=lambda place: single.thin_run(place, (MOST_TIMES, MOST_NODES)))
     runs = [run_data(run, look, label(name)) for name, run in results.runs.items()]
     panels = [measure for measure in MEASURES if any(measure in run["panels"] for run in runs)]
@@ -167,3 +172,43 @@ def page(folder: Path, _file: Path) -> Page:
         },
         notes=results.remarks,
     )
+
+
+def open_choices_verdicts(summary: dict[str, Any]) -> str:
+    """For each claim, the share of samples for which it holds, and at which levels its verdict turns."""
+    rows = []
+    for row in summary["matrix"]:
+        turns = ", ".join(f"{t['choice']} = {t['level']}" for t in row["turns"])
+        shares = [f"{formatted(row[key], '.0f', PERCENT)}" for key in open_choices.SHARES]
+        rows.append([words(row["id"]), "holds" if row["holds"] else "does not", words(turns or "–"), *shares])
+    return table(["Claim", "Holds", "Turns at", *open_choices.SHARES.values()], rows)
+
+
+def bases_verdicts(summary: dict[str, Any]) -> str:
+    rows = []
+    for base in summary["bases"]:
+        ratio, change = base["speed_ratio"], base["pressure_change"]
+        rows.append(
+            [
+                words(base["name"]),
+                formatted(ratio["median"], ".2f"),
+                percent(base["share_in_paper_band"]),
+                percent(change["against"]),
+                percent(change["along"]),
+                words(base["n_points"]),
+            ]
+        )
+    header = ["Base", "Speed against over along the shear", "Points in the paper's band",
+              "Change of pressure against", "along", "Points"]  # fmt: skip
+    return table(header, rows)
+
+
+KINDS = (
+    SimpleNamespace(is_kind=lambda folder: belongs(folder / "scorecard.json"), page=reproduction),
+    Study(open_choices.SUMMARY, open_choices.TABLE, "What the paper leaves open", open_choices.draw,
+          open_choices_verdicts),
+    Study(bases.SUMMARY, bases.POINTS, "The paper's events on deformable bases", bases.draw, bases_verdicts),
+)  # fmt: skip
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:], KINDS, "report.py"))

@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the paper's events on three meshes; renews figure and table of papers/kammer2012/fracture.md."""
+"""Runs the paper's events on three meshes; renews table and picture of fracture.md."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import matplotlib
 import numpy as np
 import slipfront
-from shared import G_over_Gamma, between_marks, checked, correlation, renew, run, write_figure
 from slipfront.figures import style
+from slipfront.figures.drawing import write_figure
+from slipfront.pages import Tables, command_to_renew, table
 
 EVENTS = {
     "left": "left-triggered, mu_k = 0.6",
@@ -39,6 +38,27 @@ class MainFront:
     work_J_per_m2: np.ndarray
     zone_m: np.ndarray
     G_over_Gamma: np.ndarray  # of the crack at rest
+
+
+def G_over_Gamma(
+    run: slipfront.OpenRun, x_m: np.ndarray, direction: int, at_x_m: float | None = None
+) -> np.ndarray:
+    """Of a crack at rest that grows from `at_x_m`, along a front, by what friction took in its run. NaN
+    beyond what is predicted."""
+    predicted = slipfront.predict_fronts(run, at_x_m=at_x_m)
+    same_way = predicted.isel(point=(predicted.direction == direction).to_numpy())
+    if same_way.sizes["point"] == 0:
+        return np.full(len(x_m), np.nan)
+    ratio = same_way.G_static_J_per_m2 / same_way.fracture_energy_J_per_m2
+    order = np.argsort(same_way.x_m.to_numpy())
+    known = same_way.x_m.to_numpy()[order], ratio.to_numpy()[order]
+    return np.interp(x_m, *known, left=np.nan, right=np.nan)
+
+
+def correlation(a: np.ndarray, b: np.ndarray) -> str:
+    """Of ranks, where both are known."""
+    both = np.isfinite(a) & np.isfinite(b)
+    return f"{slipfront.rank_correlation(a[both], b[both]):.2f}" if both.sum() > 2 else "-"
 
 
 def main_front(event: str, size_m: float, case: Path, folder: Path) -> MainFront:
@@ -67,21 +87,24 @@ def median(values: np.ndarray) -> str:
     return f"{np.median(known):.2g}" if len(known) else "-"
 
 
-def table(fronts: list[MainFront]) -> str:
-    text = (
-        "| event | h | Gamma (J/m2) | X_c/h | median speed/c_S | below c_S | median G_static/Gamma "
-        "| with (U_r-U_s)/U_s | with drop/strength drop | with G_static/Gamma |\n"
-        "|---|---|---|---|---|---|---|---|---|---|\n"
-    )
-    for f in fronts:
-        known = f.speed[np.isfinite(f.speed)]
-        text += (
-            f"| {EVENTS[f.event]} | {1e3 * f.size_m:.2f} mm | {np.nanmedian(f.work_J_per_m2):.3f} "
-            f"| {np.nanmedian(f.zone_m) / f.size_m:.2g} | {np.median(known):.2f} | {np.mean(known < 1):.0%} "
-            f"| {median(f.G_over_Gamma)} | {correlation(f.speed, f.rise)} "
-            f"| {correlation(f.speed, f.drop)} | {correlation(f.speed, f.G_over_Gamma)} |\n"
-        )
-    return text
+HEADER = [
+    "event", "h", "Gamma (J/m2)", "X_c/h", "median speed/c_S", "below c_S", "median G_static/Gamma",
+    "with (U_r-U_s)/U_s", "with drop/strength drop", "with G_static/Gamma",
+]  # fmt: skip
+
+
+def row(f: MainFront) -> list[str]:
+    known = f.speed[np.isfinite(f.speed)]
+    return [
+        EVENTS[f.event],
+        f"{1e3 * f.size_m:.2f} mm",
+        f"{np.nanmedian(f.work_J_per_m2):.3f}",
+        f"{np.nanmedian(f.zone_m) / f.size_m:.2g}",
+        f"{np.median(known):.2f}",
+        f"{np.mean(known < 1):.0%}",
+        median(f.G_over_Gamma),
+        *(correlation(f.speed, by) for by in (f.rise, f.drop, f.G_over_Gamma)),
+    ]
 
 
 def draw(fronts: list[MainFront], picture: Path) -> None:
@@ -101,25 +124,16 @@ def draw(fronts: list[MainFront], picture: Path) -> None:
         write_figure(picture, figure)
 
 
-def renew_page(page: Path, picture: Path) -> None:
-    checked(picture)
-    fronts = []
-    with TemporaryDirectory() as folder:
-        for event in EVENTS:
-            for size_m in SIZES_M:
-                place = Path(folder) / f"{event}-{size_m:.5f}"
-                fronts.append(main_front(event, size_m, page.parent / f"{event}.toml", place))
+def write(folder: Path, picture: Path) -> Tables:
+    cases = Path(__file__).parent
+    fronts = [
+        main_front(event, size_m, cases / f"{event}.toml", folder / f"{event}-{size_m:.5f}")
+        for event in EVENTS
+        for size_m in SIZES_M
+    ]
     draw(fronts, picture)
-    renew(page, lambda text: between_marks(page, text, "table", table(fronts)))
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("page", type=Path, help="papers/kammer2012/fracture.md")
-    parser.add_argument("picture", type=Path)
-    options = parser.parse_args()
-    return run(__file__, lambda: renew_page(options.page, options.picture))
+    return {"table": table(HEADER, [row(front) for front in fronts])}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_to_renew(__file__, __doc__, Path(__file__).with_name("fracture.md"), write))

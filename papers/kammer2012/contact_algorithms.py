@@ -1,42 +1,42 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the paper's events with each contact algorithm, compares their main fronts, and draws them.
-
-usage: contact-algorithms.py PROGRAM CASES RESULTS PAGE FIGURE
-Puts the table into PAGE between its marks."""
+"""Runs the paper's events with each contact algorithm; renews tables and picture of contact-algorithms.md."""
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
-import shared
+import slipfront
 from matplotlib.figure import Figure
+from slipfront.figures.drawing import write_figure
 from slipfront.figures.style import PAGE_MM, RC
 from slipfront.files import read_json
+from slipfront.pages import Tables, command_to_renew, table
 from slipfront.read import Front, read_fronts
 
 EVENTS = ("left", "spontaneous", "right", "spontaneous_mu_k_1.0")
-LAWS = {
-    "paper's law": [],
-    "strength relaxed over 0.5 us": [
-        "friction.regularisation=strength",
-        "friction.relaxation_time_s=0.5e-6",
-        "friction.relaxation_length_m=inf",
-    ],
+LAWS: dict[str, dict[str, Any]] = {
+    "paper's law": {},
+    "strength relaxed over 0.5 us": {
+        "friction.regularisation": "strength",
+        "friction.relaxation_time_s": 0.5e-6,
+        "friction.relaxation_length_m": np.inf,
+    },
 }
+OUTPUT = {"output.snapshot_times_s": [], "output.history_interval_s": 1e-5}
 BASE = "direct 18"  # the cases' own
 SUBSTEPS = (9, 18, 36, 72)
 ALGORITHMS = ("direct", "predictor_corrector")
 PERTURBED = "direct 18, E larger by 1e-9"
-VARIANTS = {
-    f"{algorithm} {n}": [f"contact.algorithm={algorithm}", f"time.interface_substeps={n}"]
+VARIANTS: dict[str, dict[str, Any]] = {
+    f"{algorithm} {n}": {"contact.algorithm": algorithm, "time.interface_substeps": n}
     for algorithm in ALGORITHMS
     for n in SUBSTEPS
-} | {PERTURBED: ["material.youngs_modulus_Pa=2.6000000026e9"]}
+} | {PERTURBED: {"material.youngs_modulus_Pa": 2.6000000026e9}}
 # What is compared: change, from, to.
 SPEED_PAIRS = (
     ("E larger by 1e-9", BASE, PERTURBED),
@@ -58,13 +58,11 @@ class Event:
         return max(long, key=lambda f: f.length_m, default=None)
 
 
-def run(program: Path, case: Path, folder: Path, settings: list[str]) -> Event:
-    command: list[str | Path] = [program, "run", case, "-o", folder, "--overwrite", "--quiet"]
-    for setting in [*settings, "output.snapshot_times_s=[]", "output.history_interval_s=1e-5"]:
-        command += ["--set", setting]
-    subprocess.run(command, check=True)
-    info = read_json(folder / "run.json")
-    energy = info["energy_at_end"]
+def run(event: str, folder: Path, changes: dict[str, Any]) -> Event:
+    if not folder.exists():
+        case = Path(__file__).with_name(f"{event}.toml")
+        slipfront.run(case, changes | OUTPUT, output=folder, progress=False)
+    energy = read_json(folder / "run.json")["energy_at_end"]
     return Event(read_fronts(folder / "fronts.csv"), energy["friction_work_J_per_m"])
 
 
@@ -87,7 +85,7 @@ def two(values: np.ndarray) -> str:
     return f"{100 * np.median(values):.2g}, {100 * np.percentile(values, 90):.2g}"
 
 
-def rows_of(law: str, event: str, results: dict[str, Event]) -> list[str]:
+def rows_of(law: str, event: str, results: dict[str, Event]) -> list[list[str]]:
     rows = []
     for direction in (-1, 1):
         of_variant = {name: result.main(direction) for name, result in results.items()}
@@ -97,7 +95,7 @@ def rows_of(law: str, event: str, results: dict[str, Event]) -> list[str]:
         for _, from_, to in SPEED_PAIRS:
             a, b = of_variant[from_], of_variant[to]
             cells.append(two(compare(a, b)) if a is not None and b is not None else "no such front")
-        rows.append("| " + " | ".join(cells) + " |")
+        rows.append(cells)
     return rows
 
 
@@ -135,34 +133,32 @@ def draw(all_results: dict[str, dict[str, dict[str, Event]]], c_L: float) -> Fig
     return figure
 
 
-def main(program: Path, cases: Path, folder: Path, page: Path, picture: Path) -> None:
-    shared.checked(picture)  # before the runs, as the page
-    shared.between_marks(page, shared.read_text(page), "table", "")
-    titles = [what for what, _, _ in SPEED_PAIRS]
-    table = ["| law | main front | " + " | ".join(titles) + " |", "|---" * (2 + len(titles)) + "|"]
-    works = ["| law | event | " + " | ".join(ALGORITHMS) + " |", "|---" * (2 + len(ALGORITHMS)) + "|"]
-    all_results: dict[str, dict[str, dict[str, Event]]] = {}
+def write(folder: Path, picture: Path) -> Tables:
+    speeds: list[list[str]] = []
+    works: list[list[str]] = []
+    all_results: dict[str, dict[str, dict[str, Event]]] = {law: {} for law in LAWS}
     c_L = np.nan
-    for law, law_settings in LAWS.items():
+    for law, law_changes in LAWS.items():
         for event in EVENTS:
             results = {}
-            for name, settings in VARIANTS.items():
+            for name, changes in VARIANTS.items():
                 out = folder / f"{law}, {event}, {name}".replace(", ", "-").replace(" ", "_")
-                results[name] = run(program, cases / f"{event}.toml", out, law_settings + settings)
+                results[name] = run(event, out, law_changes | changes)
                 c_L = read_json(out / "run.json")["wave_speeds"]["c_L_m_per_s"]
-            all_results.setdefault(law, {})[event] = results
-            table += rows_of(law, event, results)
+            all_results[law][event] = results
+            speeds += rows_of(law, event, results)
             cells = [
                 ", ".join(f"{results[f'{algorithm} {n}'].friction_work_J_per_m:.1f}" for n in SUBSTEPS)
                 for algorithm in ALGORITHMS
             ]
-            works.append(f"| {law} | {event} | " + " | ".join(cells) + " |")
+            works.append([law, event, *cells])
             print(f"{law}, {event}: done", flush=True)
-    content = "\n".join([*table, "", *works]) + "\n"
-    shared.renew(page, lambda text: shared.between_marks(page, text, "table", content))
     with matplotlib.rc_context(RC):
-        shared.write_figure(picture, draw(all_results, c_L))
+        write_figure(picture, draw(all_results, c_L))
+    header = ["law", "main front", *(what for what, _, _ in SPEED_PAIRS)]
+    return {"table": table(header, speeds) + "\n" + table(["law", "event", *ALGORITHMS], works)}
 
 
 if __name__ == "__main__":
-    sys.exit(shared.run(__file__, lambda: main(*map(Path, sys.argv[1:6]))))
+    page = Path(__file__).with_name("contact-algorithms.md")
+    sys.exit(command_to_renew(__file__, __doc__, page, write))

@@ -9,15 +9,16 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.patches import FancyArrowPatch
 from matplotlib.tri import Triangulation
-
 from slipfront.figures import style
-from slipfront.figures.criteria import SELECTION, finish, speed_over_static_ratio
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import drawn_fronts, start
-from slipfront.figures.plate import NO_FIELDS, draw_edges, edges
-from slipfront.figures.results import Results
 from slipfront.files import DataError
 from slipfront.read import Front, Run
+
+from drawing import paper_style
+from drawing.criteria import SELECTION, finish, speed_over_static_ratio
+from drawing.results import Results
+from drawing.setup import NO_FIELDS, draw_edges, edges
 
 COLOURS = "Blues_r"
 SPEED_RANGE_M_PER_S = (0.0, 2.0)
@@ -64,7 +65,7 @@ def choose_step(run: Run) -> int:
 
 def draw_missing(ax: Axes, run: Run) -> None:
     """In place of the snapshot of a run without any."""
-    label = f"{style.EVENT_STYLES[run.name].label}:\n{NO_FIELDS}"
+    label = f"{paper_style.EVENT_STYLES[run.name].label}:\n{NO_FIELDS}"
     ax.text(0.5, 0.5, label, transform=ax.transAxes, ha="center", va="center", color="0.45", gid="no_fields")
     ax.set(xticks=[], yticks=[])
 
@@ -90,7 +91,7 @@ def draw_snapshot(ax: Axes, run: Run) -> None:
     ends, boundary = edges(fields.cells)
     draw_edges(ax, points[ends[boundary]], color="black", linewidth=0.5)
 
-    event = style.EVENT_STYLES[run.name]
+    event = paper_style.EVENT_STYLES[run.name]
     began = start(run)
     if began is not None:
         ax.plot(
@@ -110,7 +111,7 @@ def draw_snapshot(ax: Axes, run: Run) -> None:
         ax.plot(
             1e3 * x_m,
             0,
-            marker=style.TIP_MARKER,
+            marker=paper_style.TIP_MARKER,
             markersize=9,
             color="black",
             markerfacecolor="white",
@@ -176,7 +177,11 @@ def three_events(results: Results) -> Drawing:
     d = axes(103, 27.5, 64, 42.5)
     speed_over_static_ratio(d, results.events)
     outside = finish(d, results.events[0])
-    handles = [*style.event_handles(results.events), *style.fill_handles(), style.pale_handle()]
+    handles = [
+        *paper_style.event_handles(results.events),
+        *paper_style.fill_handles(),
+        paper_style.pale_handle(),
+    ]
     d.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.46, -0.2), ncols=2, columnspacing=1.6)
     d.text(-0.16, 1.03, "(d)", transform=d.transAxes, fontweight="bold", va="bottom")
     return Drawing(

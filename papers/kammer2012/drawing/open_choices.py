@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which statements of the paper depend on what it leaves open.
-
-usage: python -m slipfront.figures.open_choices PICTURE DIR
-DIR: output folder of `slipfront study open-choices`"""
+"""Which statements of the paper depend on what it leaves open."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
-
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.picture import command_to_draw, write_results
 from slipfront.figures.style import PAGE_MM, Look, new_figure
 from slipfront.files import DataError, Table, read_json_table, read_table
 from slipfront.folder import result_file
@@ -293,21 +287,3 @@ def draw(folder: Path) -> Drawing:
     draw_left_triggers(figure.add_subplot(grid[1, 1]), table, summary)
     figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=TYPE_PT)
     return Drawing("open_choices", figure, "")
-
-
-def write(picture: Path, folder: Path) -> list[str]:
-    return write_results(picture, folder, draw)
-
-
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.figures.open_choices",
-        "Draws which statements of the paper depend on what it leaves open.",
-        "`slipfront study open-choices`",
-        write,
-        arguments,
-    )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

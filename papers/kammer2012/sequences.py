@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Loads the paper's plate on; renews figure and table of papers/kammer2012/sequences.md."""
+"""Loads the paper's plate on; renews table and picture of sequences.md."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import slipfront
-from shared import G_over_Gamma, correlation, renew_from_runs, write_figure
+from drawing.results import PAPER_FIT
 from slipfront.figures import style
-from slipfront.figures.bases import PAPER
+from slipfront.figures.drawing import write_figure
+from slipfront.pages import Tables, command_to_renew, table
+
+from fracture import G_over_Gamma, correlation
 
 MU_K = (0.6, 1.0)
 COLOURS = dict(zip(MU_K, ("#0072b2", "#d55e00"), strict=True))
@@ -79,12 +82,11 @@ def long_fronts(sequence: slipfront.OpenSequence) -> list[Front]:
     return found
 
 
-def loaded(mu_k: float, page: Path, folder: Path) -> Loaded:
+def loaded(mu_k: float, folder: Path) -> Loaded:
     place = folder / f"mu_k_{mu_k}"
     if not place.exists():
-        slipfront.run(
-            page.parent / "spontaneous.toml", CHANGES | {"friction.mu_k": mu_k}, output=place, progress=False
-        )
+        case = Path(__file__).with_name("spontaneous.toml")
+        slipfront.run(case, CHANGES | {"friction.mu_k": mu_k}, output=place, progress=False)
     sequence = slipfront.open(place)
     assert isinstance(sequence, slipfront.OpenSequence)
     return Loaded(mu_k, sequence, long_fronts(sequence))
@@ -97,26 +99,31 @@ def with_speed(fronts: list[Front], name: str) -> str:
     )
 
 
-def table(plates: list[Loaded]) -> str:
-    text = (
-        "| mu_k | events before all slips | longest of them (mm) | largest F_S/F_N until then, over 1.3 "
-        "| later: global events | F_S/F_N where they begin | at rest | mean slip (um) "
-        "| speed with (U_r-U_s)/U_s | with G_static/Gamma |\n|---|---|---|---|---|---|---|---|---|---|\n"
-    )
-    for p in plates:
-        n = p.n_precursors
-        before, after = p.column("friction_before"), p.column("friction_after")
-        is_global = p.column("is_global") == 1
-        longest = f"{1e3 * p.column('length_m')[:n].max():.0f}" if n else "-"
-        later = is_global & (np.arange(len(before)) > n)
-        most = before[: n + 1].max()
-        text += (
-            f"| {p.mu_k} | {n} | {longest} | {most:.3f}, {most / LOCAL:.2f} "
-            f"| {later.sum()} of {len(before) - n - 1} | {np.median(before[later]):.3f} "
-            f"| {np.median(after[later]):.3f} | {1e6 * np.median(p.column('mean_slip_m')[later]):.0f} "
-            f"| {with_speed(p.fronts, 'rise')} | {with_speed(p.fronts, 'G_over_Gamma')} |\n"
-        )
-    return text
+HEADER = [
+    "mu_k", "events before all slips", "longest of them (mm)", "largest F_S/F_N until then, over 1.3",
+    "later: global events", "F_S/F_N where they begin", "at rest", "mean slip (um)",
+    "speed with (U_r-U_s)/U_s", "with G_static/Gamma",
+]  # fmt: skip
+
+
+def row(p: Loaded) -> list[str]:
+    n = p.n_precursors
+    before, after = p.column("friction_before"), p.column("friction_after")
+    is_global = p.column("is_global") == 1
+    later = is_global & (np.arange(len(before)) > n)
+    most = before[: n + 1].max()
+    return [
+        str(p.mu_k),
+        str(n),
+        f"{1e3 * p.column('length_m')[:n].max():.0f}" if n else "-",
+        f"{most:.3f}, {most / LOCAL:.2f}",
+        f"{later.sum()} of {len(before) - n - 1}",
+        f"{np.median(before[later]):.3f}",
+        f"{np.median(after[later]):.3f}",
+        f"{1e6 * np.median(p.column('mean_slip_m')[later]):.0f}",
+        with_speed(p.fronts, "rise"),
+        with_speed(p.fronts, "G_over_Gamma"),
+    ]
 
 
 def draw(plates: list[Loaded], picture: Path) -> None:
@@ -142,8 +149,7 @@ def draw(plates: list[Loaded], picture: Path) -> None:
                 rise.plot(f.rise, f.speed, ".", **marker)
                 energy.plot(f.G_over_Gamma, f.speed, ".", **marker)
         x = np.linspace(0, RISE_TO, 100)
-        a, b, c, _ = PAPER
-        rise.plot(x, a + b * np.exp(-c * np.sqrt(x)), color="0.6", lw=1)
+        rise.plot(x, PAPER_FIT(x), color="0.6", lw=1)
         force.axhline(LOCAL, color="0.6", lw=0.6)
         force.set(xlabel="displacement of the top edge (mm)", ylabel="F_S/F_N", ylim=(0, 1.4))
         force.legend(fontsize=6)
@@ -155,11 +161,11 @@ def draw(plates: list[Loaded], picture: Path) -> None:
         write_figure(picture, figure)
 
 
-def write(page: Path, picture: Path, folder: Path) -> dict[str, str]:
-    plates = [loaded(mu_k, page, folder) for mu_k in MU_K]
+def write(folder: Path, picture: Path) -> Tables:
+    plates = [loaded(mu_k, folder) for mu_k in MU_K]
     draw(plates, picture)
-    return {"table": table(plates)}
+    return {"table": table(HEADER, [row(plate) for plate in plates])}
 
 
 if __name__ == "__main__":
-    sys.exit(renew_from_runs(__file__, __doc__, "papers/kammer2012/sequences.md", write))
+    sys.exit(command_to_renew(__file__, __doc__, Path(__file__).with_name("sequences.md"), write))

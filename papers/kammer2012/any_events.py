@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from numpy.typing import ArrayLike
-
 from slipfront import _core
 from slipfront.given import column, flag, in_order, instance, number, refusing, text
 from slipfront.measures import Arrays, history_arrays, tractions_at
