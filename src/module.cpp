@@ -17,5 +17,4 @@ NB_MODULE(_core, module) {
   slipfront::python::bind_fits(module);
   slipfront::python::bind_gauges(module);
   slipfront::python::bind_batch(module);
-  slipfront::python::bind_kammer2012(module);
 }

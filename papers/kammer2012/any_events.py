@@ -6,7 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import events
+from events import Collapse, Event, event_of
 from numpy.typing import ArrayLike
+from scorecard import Claim, Reproduction
+from scorecard import scorecard as claims_of
 from slipfront import _core
 from slipfront.given import column, flag, in_order, instance, number, refusing, text
 from slipfront.measures import Arrays, history_arrays, tractions_at
@@ -22,7 +26,7 @@ def outcome(
     threshold_m_per_s: float = 1e-3,
     critical_shear_m: float = float("nan"),
     **tables: Any,
-) -> _core.Outcome:
+) -> Event:
     """An event as the claims look at it.
 
     case: material, friction, event.kind with its trigger zone, and how fronts are measured; as for `run`.
@@ -31,31 +35,32 @@ def outcome(
     from the ends. Raises CaseError where arrays do not fit each other or the case cannot be used."""
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
     shear_m = number(critical_shear_m, "critical_shear_m")
-    given = text(name, "name"), make_case(case, None, tables), *history_arrays(history)
-    t_s, p_s = tractions_at(given[3], tractions)
+    called, prepared, arrays = text(name, "name"), make_case(case, None, tables), history_arrays(history)
+    t_s, p_s = tractions_at(arrays[1], tractions)
     with refusing():
-        return _core.outcome(*given, t_s, p_s, threshold, shear_m)
+        found = _core.event_of_history(prepared, *arrays, t_s, p_s, threshold, shear_m)
+        return event_of(called, prepared, found)
 
 
-def collapse(outcomes: Iterable[_core.Outcome], *, without_tails: bool = False) -> _core.Collapse:
+def collapse(outcomes: Iterable[Event], *, without_tails: bool = False) -> Collapse:
     """How well each criterion orders the speeds of a set of events: spreads at equal criterion, the fit of
     V_tip/c_L over the energy rise, and the share of points in the paper's band.
 
     without_tails: without the last 20 mm of fronts that arrest or run out of contact."""
-    events = in_order(outcomes, "outcomes", "a list of slipfront.Outcome")
-    for event in events:
-        instance(event, _core.Outcome, "one of outcomes")
-    return _core.collapse(events, flag(without_tails, "without_tails"))
+    given = in_order(outcomes, "outcomes", "a list of events")
+    for event in given:
+        instance(event, Event, "one of outcomes")
+    return events.collapse(given, flag(without_tails, "without_tails"))
 
 
 def scorecard(
     *,
-    spontaneous: _core.Outcome,
-    left: _core.Outcome,
-    right: _core.Outcome,
-    spontaneous_mu_k_1: _core.Outcome,
+    spontaneous: Event,
+    left: Event,
+    right: Event,
+    spontaneous_mu_k_1: Event,
     experiment: Mapping[str, ArrayLike] | None = None,
-) -> list[_core.Claim]:
+) -> list[Claim]:
     """Every claim against four events, the last of them with mu_k = 1.0; each row says how it is tested.
 
     experiment: measured static_ratio and v_over_c_L [points]. Claims about studies over friction are not
@@ -63,10 +68,8 @@ def scorecard(
     points = None
     if experiment is not None:
         ratio, speed = (column(experiment, "experiment", key) for key in ("static_ratio", "v_over_c_L"))
-        points = ratio.tolist(), speed.tolist()
-    events = {"spontaneous": spontaneous, "left": left, "right": right}
-    events["spontaneous_mu_k_1"] = spontaneous_mu_k_1
-    for name, event in events.items():
-        instance(event, _core.Outcome, name)
-    with refusing():
-        return _core.scorecard(**events, experiment=points)
+        points = ratio, speed
+    four = (spontaneous, left, right, spontaneous_mu_k_1)
+    for name, event in zip(("spontaneous", "left", "right", "spontaneous_mu_k_1"), four, strict=True):
+        instance(event, Event, name)
+    return claims_of(Reproduction(*four, experiment=points))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Renews the table and the picture of bases.md from the results of `slipfront study base`."""
+"""Renews the table and the picture of bases.md from the results of `bases.py`."""
 
 from __future__ import annotations
 
@@ -48,4 +48,4 @@ def write(results: Path, picture: Path) -> Tables:
 
 if __name__ == "__main__":
     page = Path(__file__).with_name("bases.md")
-    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront study base"))
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "bases.py"))

@@ -57,7 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = parser_of_kinds(
         "python papers/kammer2012/draw.py",
         "Draws the paper's figures and a page of HTML with them, which needs PNG, into DIR/figures.",
-        "`slipfront reproduce`",
+        "`reproduce.py`",
     )
     measured = "measured points to draw into figure 2: columns static_ratio and v_over_c_L or v_m_per_s"
     parser.add_argument("--experiment", metavar="CSV", type=Path, help=measured)

@@ -271,4 +271,4 @@ def write(results: Path, picture: Path) -> Tables:
 
 if __name__ == "__main__":
     page = Path(__file__).with_name("energy-criterion.md")
-    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront reproduce"))
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "reproduce.py"))

@@ -230,4 +230,4 @@ def write(results: Path, picture: Path) -> Tables:
 
 if __name__ == "__main__":
     page = Path(__file__).with_name("open-choices.md")
-    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront study open-choices"))
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "open_choices.py"))

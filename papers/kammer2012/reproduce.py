@@ -19,6 +19,7 @@ import circle
 import slipfront
 from analysis import write_analysis, write_json, write_scorecard
 from commands import Progress, parser_of, run_command
+from drawing.results import read_experiment
 from events import Event, event_of
 from scorecard import (
     Claim,
@@ -32,7 +33,6 @@ from scorecard import (
     summary,
 )
 from slipfront.errors import BlowUpError
-from slipfront.read import read_experiment
 
 from cases import (
     EVENTS,
@@ -147,6 +147,10 @@ def lines_of(claims: list[Claim]) -> list[str]:
 def given_triggers(options: Namespace) -> TriggerSample | None:
     if options.open_choices is None:
         return None
+    if Path(options.open_choices).absolute() == Path(options.output).absolute():
+        raise slipfront.CaseError(
+            f"{options.output}: holds the study of the open choices; choose another folder"
+        )
     from open_choices import read_trigger_sample
 
     return read_trigger_sample(options.open_choices, options.quick)

@@ -2,7 +2,7 @@
 """Renews the table of scorecard.md from a reproduction's scorecard.json; the text stays.
 
 A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations
-are there where `slipfront reproduce --sensitivity` has written them."""
+are there where `reproduce.py --sensitivity` has written them."""
 
 from __future__ import annotations
 
@@ -66,4 +66,4 @@ def write(results: Path, _: Path) -> Tables:
 
 if __name__ == "__main__":
     page = Path(__file__).with_name("scorecard.md")
-    sys.exit(command_to_renew(__file__, __doc__, page, write, "slipfront reproduce"))
+    sys.exit(command_to_renew(__file__, __doc__, page, write, "reproduce.py"))

@@ -442,9 +442,9 @@ class Stepper:
 
     def __repr__(self) -> str: ...
 
-    def start(self, t_Pa: object, p_Pa: object, *, intact: object = 1.0, shear_speed_m_per_s: float = 0.0) -> None:
+    def start(self, t_Pa: object, p_Pa: object, *, strength_fraction: object = 1.0, shear_speed_m_per_s: float = 0.0) -> None:
         """
-        Starts at rest, undeformed, under tractions on the interface: each a number or [interface nodes]. t_Pa drives the body above to +x, p_Pa > 0 presses it down, the opposite acts on a body below. intact: 1, or less down to 0 for nodes weakened for good, mu = mu_k + intact (mu - mu_k). shear_speed_m_per_s: of a loaded upper edge. Raises CaseError.
+        Starts at rest, undeformed, under tractions on the interface: each a number or [interface nodes]. t_Pa drives the body above to +x, p_Pa > 0 presses it down, the opposite acts on a body below. strength_fraction: 1, or less down to 0 for nodes weakened for good, mu = mu_k + strength_fraction (mu - mu_k). shear_speed_m_per_s: of a loaded upper edge. Raises CaseError.
         """
 
     def start_from_statics(self, share: float | None = None, **loading: object) -> None:
@@ -912,6 +912,9 @@ class Batch:
     def n_quiet(self) -> int:
         """of them, those that ended before time.end_s since nothing moved"""
 
+def event_of_history(case: Case, time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, critical_shear_m: float) -> BatchEvent:
+    """An event from a history of its interface and the tractions before it."""
+
 class ResultFolder:
     """A folder of results, which come into it when they are complete."""
 
@@ -933,128 +936,3 @@ class ResultFolder:
     def publish(self) -> None: ...
 
     def abandon(self) -> None: ...
-
-class Criterion(enum.Enum):
-    static_ratio = 0
-
-    dynamic_ratio = 1
-
-    energy_rise = 2
-
-def criterion(which: Criterion, t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t_d_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_d_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], U_s_J_per_m3: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], U_r_J_per_m3: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
-    """A criterion at points of fronts [points]."""
-
-class Outcome:
-    """An event, as the claims look at it."""
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def fronts(self) -> list[Front]:
-        """those of at least 10 mm"""
-
-    @property
-    def peak_x_m(self) -> float:
-        """of t_s/p_s inside"""
-
-    @property
-    def first_onset_x_m(self) -> float:
-        """inside; NaN: none"""
-
-def outcome(name: str, case: Case, time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, critical_shear_m: float) -> Outcome:
-    """An event from a history of its interface and the tractions before it."""
-
-class Spreads:
-    """Of V_tip/c_L at equal criterion."""
-
-    @property
-    def cases(self) -> Spread:
-        """between the events"""
-
-    @property
-    def fronts(self) -> Spread:
-        """between all their fronts"""
-
-class Collapse:
-    """How well each criterion orders the speeds of a set of events."""
-
-    @property
-    def static_ratio(self) -> Spreads:
-        """against t_s/p_s"""
-
-    @property
-    def dynamic_ratio(self) -> Spreads:
-        """against t_d/p_d"""
-
-    @property
-    def energy_rise(self) -> Spreads:
-        """against (U_r - U_s)/U_s"""
-
-    @property
-    def fit(self) -> ExponentialFit | None:
-        """of V_tip/c_L against the energy rise; None below 10 points"""
-
-    @property
-    def share_in_paper_band(self) -> float: ...
-
-    @property
-    def n_points(self) -> int: ...
-
-class Figure:
-    """A number that a claim states."""
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def value(self) -> float:
-        """in the unit given; NaN where undefined"""
-
-    @property
-    def unit(self) -> str: ...
-
-class Claim:
-    """A claim of Kammer et al. 2012, tested."""
-
-    @property
-    def id(self) -> str: ...
-
-    @property
-    def claim(self) -> str: ...
-
-    @property
-    def paper(self) -> str:
-        """where it stands"""
-
-    @property
-    def measured(self) -> str: ...
-
-    @property
-    def holds(self) -> bool | None:
-        """None where it is not tested"""
-
-    @property
-    def how(self) -> str:
-        """the test"""
-
-    @property
-    def figures(self) -> list[Figure]:
-        """the numbers of `measured`"""
-
-    @property
-    def counts(self) -> bool:
-        """whether the verdict is the claim's"""
-
-    @property
-    def second_test_of(self) -> str:
-        """id of the row whose test this one corrects"""
-
-    @property
-    def why(self) -> str:
-        """that row's test misjudges the claim"""
-
-def collapse(outcomes: Sequence[Outcome], without_tails: bool) -> Collapse: ...
-
-def scorecard(spontaneous: Outcome, left: Outcome, right: Outcome, spontaneous_mu_k_1: Outcome, experiment: tuple[Sequence[float], Sequence[float]] | None) -> list[Claim]:
-    """Every claim against four events; what needs studies is not tested."""

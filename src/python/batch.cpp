@@ -6,6 +6,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -22,6 +24,7 @@
 #include "input/schema.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/histories.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
 #include "run/checkpoint.hpp"
@@ -83,6 +86,44 @@ BatchEvent event_of(const run::Result& result, const run::InitialState& initial)
   for (const auto& snapshot : result.event.snapshots)
     e.snapshots.push_back({snapshot.time_s, of_plate(snapshot.v_m_per_s.x), of_plate(snapshot.v_m_per_s.y)});
   return e;
+}
+
+/// Where the interface is in contact, inside and at its largest t/p, as the statics would tell.
+void find_contact(const record::StaticState& state, double edge_margin_m, run::InitialState& initial) {
+  auto& common = initial.common;
+  const auto in_contact = [](double p_Pa) { return p_Pa > 0; };
+  const auto first = std::ranges::find_if(state.p_s_Pa, in_contact);
+  require(first != state.p_s_Pa.end(), "p_s_Pa is nowhere above 0: nothing is in contact");
+  const auto last = std::find_if(state.p_s_Pa.rbegin(), state.p_s_Pa.rend(), in_contact);
+  common.inside_from_m = state.x_m[first - state.p_s_Pa.begin()] + edge_margin_m;
+  common.inside_to_m = state.x_m[state.p_s_Pa.rend() - last - 1] - edge_margin_m;
+  common.peak_ratio = -infinity;
+  for (std::size_t k = 0; k < state.x_m.size(); ++k) {
+    const double ratio = state.t_s_Pa[k] / state.p_s_Pa[k];
+    if (!common.is_inside(state.x_m[k]) || !(state.p_s_Pa[k] > 0) || !(ratio > common.peak_ratio)) continue;
+    common.peak_ratio = ratio;
+    common.peak_x_m = state.x_m[k];
+  }
+  require(std::isfinite(common.peak_ratio), "t_s_Pa/p_s_Pa is defined nowhere inside the interface");
+}
+
+/// An event from a user's arrays instead of a run.
+BatchEvent event_of_history(const input::CaseFile& given, const Values& time_s, const Values& x_m,
+                            const Rows& slip_rate_m_per_s, const Rows& t_Pa, const Rows& p_Pa,
+                            const Values& t_s_Pa, const Values& p_s_Pa, double threshold_m_per_s,
+                            double critical_shear_m) {
+  const auto& config = given.config();
+  const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
+  run::InitialState initial;
+  initial.common.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
+  initial.critical_shear_m = critical_shear_m;
+  find_contact(initial.common.tractions, config.loading.edge_margin_m, initial);
+  run::Result result;
+  result.speeds = run::wave_speeds(config.material);
+  const auto options = run::front_options(config, initial);
+  result.event.record = to_record(history, threshold_m_per_s, options.l_star_m);
+  result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
+  return event_of(result, initial);
 }
 
 /// Whether a run's folder is complete and as it was written.
@@ -193,6 +234,9 @@ void bind_batch(nb::module_& module) {
       .def_prop_ro(
           "n_quiet", [](const Batch& b) { return b.counts().n_quiet; },
           "of them, those that ended before time.end_s since nothing moved");
+  module.def("event_of_history", &event_of_history, "case"_a, "time_s"_a, "x_m"_a, "slip_rate_m_per_s"_a,
+             "t_Pa"_a, "p_Pa"_a, "t_s_Pa"_a, "p_s_Pa"_a, "threshold_m_per_s"_a, "critical_shear_m"_a,
+             "An event from a history of its interface and the tractions before it.");
   nb::class_<ResultFolder>(module, "ResultFolder",
                            "A folder of results, which come into it when they are complete.")
       .def(

@@ -19,6 +19,5 @@ void bind_fracture(nb::module_& module);
 void bind_passages(nb::module_& module);
 void bind_fits(nb::module_& module);
 void bind_gauges(nb::module_& module);
-void bind_kammer2012(nb::module_& module);
 
 }  // namespace slipfront::python

@@ -208,7 +208,7 @@ def test_events_are_outcomes():
         assert "outcome" in refusal(lambda given=given: any_events.collapse(given)).lower()
     four = dict.fromkeys(("spontaneous", "left", "right", "spontaneous_mu_k_1"), "left.toml")
     said = refusal(lambda: any_events.scorecard(**four))
-    assert said == "spontaneous is 'left.toml'; it must be a slipfront.Outcome"
+    assert said == "spontaneous is 'left.toml'; it must be a slipfront.Event"
 
 
 @pytest.mark.parametrize(

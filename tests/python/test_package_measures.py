@@ -157,7 +157,7 @@ def test_claims_of_four_events():
     assert next(claim for claim in with_points if claim.id == "E1").holds is not None
     collapse = any_events.collapse(outcomes.values())
     assert collapse.n_points > 0
-    assert collapse.energy_rise.fronts.n_bins >= 0
+    assert collapse.fronts["energy_rise"].n_bins >= 0
 
 
 def test_wave_speeds_are_those_of_a_run(run):

@@ -18,7 +18,7 @@ from drawing.study import Study, read_studies
 EVENTS = ("left", "spontaneous", "right")  # the three events of one initial state
 FITTED_CLAIM = "C18"  # the energy criterion
 HIGH_MU_K = "spontaneous_mu_k_1.0"
-# Columns of `slipfront reproduce --sensitivity`.
+# Columns of `reproduce.py --sensitivity`.
 VARIATIONS = {"mesh_variation": "With the mesh, moves by", "step_variation": "With the step, moves by"}
 
 
@@ -167,9 +167,9 @@ def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndar
 def read_results(
     folder: Path, experiment: Path | None = None, read: Callable[[Path], Run] = read_run
 ) -> Results:
-    """A folder of `slipfront reproduce`; `read` reads one of its runs."""
+    """A folder of `reproduce.py`; `read` reads one of its runs."""
     if not is_folder(folder):
-        raise DataError(f"{folder}: no such folder; DIR is of `slipfront reproduce`, `study` or `run`")
+        raise DataError(f"{folder}: no such folder; DIR is of `reproduce.py`, `study` or `run`")
     runs = {name: read(located(folder / name)) for name in (*EVENTS, HIGH_MU_K)}
     file = folder / "analysis.json"
     analysis = read_json_table(result_file(file))
