@@ -125,39 +125,39 @@ test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process,
 # The paper's runs and figures; the argument adds options.
 define REPRODUCE
 @echo "== Running the paper's cases into $(RESULTS)"
-$(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(wildcard $(RESULTS)-open-choices/checksums.sha256),--open-choices $(RESULTS)-open-choices) $(1)
+PYTHONPATH=python $(PYTHON) $(PAPER)/reproduce.py -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(wildcard $(RESULTS)-open-choices/checksums.sha256),--open-choices $(RESULTS)-open-choices) $(1)
 @echo "== Drawing the figures"
-PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
+PYTHONPATH=python $(PYTHON) $(PAPER)/draw.py $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
 endef
 
-reproduce: ready  ## everything behind the paper: runs, scorecard, figures, into results/
+reproduce: ready module  ## everything behind the paper: runs, scorecard, figures, into results/
 	$(call REPRODUCE)
 
-sensitivity: ready  ## the same, and how far each figure of the scorecard moves with mesh and step
+sensitivity: ready module  ## the same, and how far each figure of the scorecard moves with mesh and step
 	$(call REPRODUCE,--sensitivity)
 
-quick: ready  ## the same in a second, on a coarse mesh, into results-quick/
-	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
+quick: ready module  ## the same in a second, on a coarse mesh, into results-quick/
+	PYTHONPATH=python $(PYTHON) $(PAPER)/reproduce.py --quick -o $(RESULTS)-quick --overwrite
+	PYTHONPATH=python $(PYTHON) $(PAPER)/draw.py $(RESULTS)-quick
 
 verify: ready-to-test  ## problems with known answers, with their pictures, and the energy balance over a million steps
 	$(BUILD)/slipfront-verify -o $(RESULTS)-verify
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
+	PYTHONPATH=python $(PYTHON) verification/figures.py $(RESULTS)-verify $(RESULTS)-verify/figures
 	$(BUILD)/test_motion --gtest_also_run_disabled_tests --gtest_filter='*Million*'
 
 verification-pages: verify  ## renew the numbers and pictures of verification
-	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify verification
+	PYTHONPATH=python $(PYTHON) verification/pages.py $(RESULTS)-verify verification
 	cp $(RESULTS)-verify/figures/*.png verification/figures/
 
 bench: program  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
-contact-algorithms: ready  ## the paper's events with each contact algorithm: renews papers/kammer2012/contact-algorithms.md
-	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) $(PAPER) $(RESULTS)-contact $(PAPER)/contact-algorithms.md $(PAPER)/figures/contact_algorithms.png
+contact-algorithms: ready module  ## the paper's events with each contact algorithm: renews papers/kammer2012/contact-algorithms.md
+	PYTHONPATH=python $(PYTHON) $(PAPER)/contact_algorithms.py
 
-regularised: ready  ## the same events with friction that has a length scale, into results-regularised/
-	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
+regularised: ready module  ## the same events with friction that has a length scale, into results-regularised/
+	PYTHONPATH=python $(PYTHON) $(PAPER)/reproduce.py --regularised -o $(RESULTS)-regularised --overwrite
+	PYTHONPATH=python $(PYTHON) $(PAPER)/draw.py $(RESULTS)-regularised
 	cp $(RESULTS)-regularised/figures/studies.png docs/figures/regularised_studies.png
 
 # An event's studies, without and with a length scale in the friction, and their figures.
@@ -182,18 +182,16 @@ interface-step: ready  ## error of front speeds against the cost of sub-cycling,
 	for event in left spontaneous right; do $(PROGRAM) study interface-step $(PAPER)/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
 
-open-choices: ready  ## what the paper leaves open, varied: renews papers/kammer2012/open-choices.md and its figure
-	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices $(PAPER)/figures/open_choices.png $(RESULTS)-open-choices
-	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices $(PAPER)/open-choices.md
+open-choices: ready module  ## what the paper leaves open, varied: renews papers/kammer2012/open-choices.md and its figure
+	PYTHONPATH=python $(PYTHON) $(PAPER)/open_choices.py -o $(RESULTS)-open-choices --overwrite
+	PYTHONPATH=python $(PYTHON) $(PAPER)/open_choices_page.py $(RESULTS)-open-choices
 
 andrews1976: ready module  ## when ruptures pass c_S, after Andrews: renews papers/andrews1976/transition.png
 	PYTHONPATH=python $(PYTHON) papers/andrews1976/claims.py papers/andrews1976
 
-bases: ready  ## the paper's events on deformable bases: renews papers/kammer2012/bases.md and its figure
-	$(PROGRAM) study base -o $(RESULTS)-bases --overwrite
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures.bases $(PAPER)/figures/bases.png $(RESULTS)-bases
-	$(PYTHON) scripts/bases-page.py $(RESULTS)-bases $(PAPER)/bases.md
+bases: ready module  ## the paper's events on deformable bases: renews papers/kammer2012/bases.md and its figure
+	PYTHONPATH=python $(PYTHON) $(PAPER)/bases.py -o $(RESULTS)-bases --overwrite
+	PYTHONPATH=python $(PYTHON) $(PAPER)/bases_page.py $(RESULTS)-bases
 
 sweep: ready  ## 400 runs over the friction law's parameters, and their map, into results-sweep/ and docs/figures
 	$(PROGRAM) sweep examples/sweeps/mu_k_alpha.toml -o $(RESULTS)-sweep
@@ -231,12 +229,12 @@ site: module $(VENV)/.installed-docs  ## the documentation as a site, build/site
 site-links: module $(VENV)/.installed-docs  ## fail where a link of the documentation to elsewhere leads nowhere; needs the network
 	$(SPHINX) -b linkcheck . build/site-links
 
-docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
+docs: module sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
-	$(PYTHON) scripts/scorecard-page.py $(RESULTS) $(PAPER)/scorecard.md
-	$(PYTHON) scripts/energy-criterion.py $(RESULTS) $(PAPER)/energy-criterion.md $(PAPER)/figures/energy_criterion.png
-	PYTHONPATH=python $(PYTHON) scripts/paper-fracture.py $(PAPER)/fracture.md $(PAPER)/figures/fracture.png
-	PYTHONPATH=python $(PYTHON) scripts/paper-sequences.py $(PAPER)/sequences.md $(PAPER)/figures/sequences.png
+	PYTHONPATH=python $(PYTHON) $(PAPER)/scorecard_page.py $(RESULTS)
+	PYTHONPATH=python $(PYTHON) $(PAPER)/energy_criterion.py $(RESULTS)
+	PYTHONPATH=python $(PYTHON) $(PAPER)/fracture.py
+	PYTHONPATH=python $(PYTHON) $(PAPER)/sequences.py
 	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(PAPER)/figures/
 	cp $(RESULTS)/figures/energy_balance.png docs/figures/
 

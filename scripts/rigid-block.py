@@ -232,11 +232,11 @@ def draw(found: list[Compared], picture: Path) -> None:
         write_figure(picture, figure)
 
 
-def write(_: Path, picture: Path, folder: Path) -> dict[str, str]:
+def write(folder: Path, picture: Path) -> dict[str, str]:
     found, steady = compared(folder), stable(SOFT[0], folder)
     draw(found, picture)
     return {"table": table(found, steady)}
 
 
 if __name__ == "__main__":
-    sys.exit(renew_from_runs(__file__, __doc__, "docs/rigid-block.md", write))
+    sys.exit(renew_from_runs(__file__, __doc__, "rigid-block.md", write))

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from slipfront.figures import rupture, sequence
+from slipfront.figures.drawing import write_results
 from slipfront.read import is_sequence
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
@@ -34,8 +35,8 @@ def main() -> int:
         done = subprocess.run(command, check=False)
         if done.returncode != 0:
             return done.returncode
-        write = sequence.write if is_sequence(folder) else rupture.write
-        write(options.figures / f"example_{name.replace('-', '_')}.png", folder)
+        draw = sequence.draw if is_sequence(folder) else rupture.draw
+        write_results(options.figures / f"example_{name.replace('-', '_')}.png", folder, draw)
     return 0
 
 

@@ -431,7 +431,7 @@ def draw(pushed: list[Precursors], slow: list[Nucleation], loaded: list[Loaded],
         write_figure(picture, figure)
 
 
-def write(_: Path, picture: Path, place: Path) -> dict[str, str]:
+def write(place: Path, picture: Path) -> dict[str, str]:
     pushed = all_precursors(place)
     slow = [nucleation(*one, place) for one in NUCLEATIONS]
     loaded = [
@@ -452,4 +452,4 @@ def write(_: Path, picture: Path, place: Path) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    sys.exit(renew_from_runs(__file__, __doc__, "docs/sequences-checked.md", write))
+    sys.exit(renew_from_runs(__file__, __doc__, "sequences-checked.md", write))

@@ -33,9 +33,7 @@ void run(int argc, char** argv, slipfront::Processes& processes) {
   slipfront::cli::add_validate(app);
   slipfront::cli::add_new(app);
   slipfront::cli::add_keys(app);
-  slipfront::cli::add_study(app);
   slipfront::cli::add_python_commands(app);
-  slipfront::cli::add_reproduce(app);
   slipfront::cli::add_bench(app);
   slipfront::cli::add_page(app, program);
   program.run(argc, argv);

@@ -16,5 +16,5 @@ NB_MODULE(_core, module) {
   slipfront::python::bind_passages(module);
   slipfront::python::bind_fits(module);
   slipfront::python::bind_gauges(module);
-  slipfront::python::bind_kammer2012(module);
+  slipfront::python::bind_batch(module);
 }

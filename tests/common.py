@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What tests of several folders need: programs as users run them, how they end, what their folders hold."""
 
+import importlib.util
 import json
 import os
 import re
@@ -32,6 +33,16 @@ def built(variable="SLIPFRONT", place="build/release/slipfront"):
         f"no program: build {path}, or set {variable} to another"
     )
     return path
+
+
+def loaded_script(path):
+    """A script of this tree as a module."""
+    spec = importlib.util.spec_from_file_location(Path(path).stem.replace("-", "_"), ROOT / path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # where its data classes look for their names
+    spec.loader.exec_module(module)
+    del sys.modules[spec.name]
+    return module
 
 
 def as_from_a_terminal():

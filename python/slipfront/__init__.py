@@ -12,22 +12,18 @@ from typing import TYPE_CHECKING, Any
 from slipfront.errors import NEEDS_MODULE
 
 if TYPE_CHECKING:
+    from slipfront._core import BatchEvent as BatchEvent
     from slipfront._core import Body as Body
-    from slipfront._core import Claim as Claim
-    from slipfront._core import Collapse as Collapse
     from slipfront._core import ExponentialFit as ExponentialFit
     from slipfront._core import Info as Info
     from slipfront._core import Interface as Interface
     from slipfront._core import InterfaceState as InterfaceState
     from slipfront._core import Mesh as Mesh
-    from slipfront._core import Outcome as Outcome
     from slipfront._core import Rupture as Rupture
     from slipfront._core import Stepper as Stepper
     from slipfront._core import WaveSpeeds as WaveSpeeds
     from slipfront._core import WellPosedness as WellPosedness
-    from slipfront.claims import collapse as collapse
-    from slipfront.claims import outcome as outcome
-    from slipfront.claims import scorecard as scorecard
+    from slipfront.batch import Batch as Batch
     from slipfront.contour import ContourIntegral as ContourIntegral
     from slipfront.contour import contour_integral as contour_integral
     from slipfront.errors import BlowUpError as BlowUpError
@@ -46,10 +42,12 @@ if TYPE_CHECKING:
     from slipfront.material import well_posedness as well_posedness
     from slipfront.measures import FrontSettings as FrontSettings
     from slipfront.measures import criteria as criteria
+    from slipfront.measures import falls_while_rises as falls_while_rises
     from slipfront.measures import find_fronts as find_fronts
     from slipfront.measures import find_fronts_in_history as find_fronts_in_history
     from slipfront.measures import fit_exponential as fit_exponential
     from slipfront.measures import rank_correlation as rank_correlation
+    from slipfront.measures import ratio_at_equal_x as ratio_at_equal_x
     from slipfront.measures import spread_at_equal_x as spread_at_equal_x
     from slipfront.onsets import read_onsets as read_onsets
     from slipfront.opened import OpenRun as OpenRun
@@ -58,6 +56,7 @@ if TYPE_CHECKING:
     from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
     from slipfront.other_codes import read_sem2dpack as read_sem2dpack
     from slipfront.other_codes import read_uguca as read_uguca
+    from slipfront.running import case as case
     from slipfront.running import info as info
     from slipfront.running import resume as resume
     from slipfront.running import run as run
@@ -69,22 +68,18 @@ if TYPE_CHECKING:
 
 # The module of each name.
 _PLACES = {
+    "BatchEvent": "_core",
     "Body": "_core",
-    "Claim": "_core",
-    "Collapse": "_core",
     "ExponentialFit": "_core",
     "Info": "_core",
     "Interface": "_core",
     "InterfaceState": "_core",
     "Mesh": "_core",
-    "Outcome": "_core",
     "Rupture": "_core",
     "Stepper": "_core",
     "WaveSpeeds": "_core",
     "WellPosedness": "_core",
-    "collapse": "claims",
-    "outcome": "claims",
-    "scorecard": "claims",
+    "Batch": "batch",
     "ContourIntegral": "contour",
     "contour_integral": "contour",
     "BlowUpError": "errors",
@@ -103,10 +98,12 @@ _PLACES = {
     "predict_fronts": "fracture",
     "FrontSettings": "measures",
     "criteria": "measures",
+    "falls_while_rises": "measures",
     "find_fronts": "measures",
     "find_fronts_in_history": "measures",
     "fit_exponential": "measures",
     "rank_correlation": "measures",
+    "ratio_at_equal_x": "measures",
     "spread_at_equal_x": "measures",
     "read_onsets": "onsets",
     "OpenRun": "opened",
@@ -115,6 +112,7 @@ _PLACES = {
     "read_seissol_fault_receivers": "other_codes",
     "read_sem2dpack": "other_codes",
     "read_uguca": "other_codes",
+    "case": "running",
     "info": "running",
     "resume": "running",
     "run": "running",

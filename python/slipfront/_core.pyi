@@ -5,6 +5,7 @@ The compiled part of slipfront; use the package slipfront, which explains it.
 from collections.abc import Callable, Sequence
 import enum
 import os
+import pathlib
 from typing import Annotated
 
 import numpy
@@ -361,9 +362,14 @@ class Case:
     def well_posedness(self, pressure_Pa: float, element_size_m: float, longest_wavelength_m: float) -> WellPosedness:
         """Of slow uniform sliding of the case's materials under its friction."""
 
-    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
+    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]], within: ResultFolder | None = None) -> None:
         """
-        Runs the case into a folder; progress(part, step, total) is called at times, each of the observers with an InterfaceState at its interval, s.
+        Runs the case into a folder; progress(part, step, total) is called at times, each of the observers with an InterfaceState at its interval, s. within: the ResultFolder of whose work the folder is a part.
+        """
+
+    def check(self) -> None:
+        """
+        What can be checked without solving anything: memory, geometry; raises CaseError.
         """
 
 def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Callable | None, progress: object | None) -> None:
@@ -436,9 +442,9 @@ class Stepper:
 
     def __repr__(self) -> str: ...
 
-    def start(self, t_Pa: object, p_Pa: object, *, intact: object = 1.0, shear_speed_m_per_s: float = 0.0) -> None:
+    def start(self, t_Pa: object, p_Pa: object, *, strength_fraction: object = 1.0, shear_speed_m_per_s: float = 0.0) -> None:
         """
-        Starts at rest, undeformed, under tractions on the interface: each a number or [interface nodes]. t_Pa drives the body above to +x, p_Pa > 0 presses it down, the opposite acts on a body below. intact: 1, or less down to 0 for nodes weakened for good, mu = mu_k + intact (mu - mu_k). shear_speed_m_per_s: of a loaded upper edge. Raises CaseError.
+        Starts at rest, undeformed, under tractions on the interface: each a number or [interface nodes]. t_Pa drives the body above to +x, p_Pa > 0 presses it down, the opposite acts on a body below. strength_fraction: 1, or less down to 0 for nodes weakened for good, mu = mu_k + strength_fraction (mu - mu_k). shear_speed_m_per_s: of a loaded upper edge. Raises CaseError.
         """
 
     def start_from_statics(self, share: float | None = None, **loading: object) -> None:
@@ -677,6 +683,11 @@ def find_fronts(x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order
 def find_fronts_in_history(time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, tip_at_peak: bool, options: FrontOptions) -> list[Front]:
     """Fronts in a history of the interface, matrices [times, nodes]."""
 
+def falls_while_rises(s_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], falling: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], rising: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], min_length_m: float) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+    """
+    Lengths of stretches of a path over which one quantity falls while another rises.
+    """
+
 def energy_density_J_per_m3(t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], youngs_modulus_Pa: float, poissons_ratio: float, plane_strain: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
     """Kammer et al. 2012, Eq. 2."""
 
@@ -742,10 +753,31 @@ class Spread:
     def n_bins(self) -> int:
         """bins with at least two series"""
 
+class Ratio:
+    """Ratio of the medians of y of two series at equal x."""
+
+    @property
+    def median(self) -> float:
+        """over the bins; NaN where no bin has both series"""
+
+    @property
+    def low(self) -> float:
+        """the smallest of a bin"""
+
+    @property
+    def high(self) -> float:
+        """the largest"""
+
+    @property
+    def n_bins(self) -> int:
+        """bins that both series reach"""
+
 def fit_exponential(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], resamples: int, block_points: int, confidence: float, seed: int) -> ExponentialFit:
     """Least squares over all points of all series (x, y)."""
 
 def spread_at_equal_x(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], bins: int) -> Spread: ...
+
+def ratio_at_equal_x(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], bins: int) -> Ratio: ...
 
 def rank_correlation(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> float:
     """Spearman's."""
@@ -773,127 +805,134 @@ class TipField:
     def limiting_speed_m_per_s(self) -> float:
         """up to which there is a field"""
 
-class Criterion(enum.Enum):
-    static_ratio = 0
-
-    dynamic_ratio = 1
-
-    energy_rise = 2
-
-def criterion(which: Criterion, t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t_d_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_d_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], U_s_J_per_m3: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], U_r_J_per_m3: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
-    """A criterion at points of fronts [points]."""
-
-class Outcome:
-    """An event, as the claims look at it."""
+class Velocities:
+    """Of a plate's nodes at a time."""
 
     @property
-    def name(self) -> str: ...
+    def time_s(self) -> float: ...
 
     @property
-    def fronts(self) -> list[Front]:
-        """those of at least 10 mm"""
+    def x_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def y_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+class BatchEvent:
+    """What a case of a batch has come to."""
+
+    @property
+    def blew_up(self) -> bool:
+        """see reason"""
+
+    @property
+    def reason(self) -> str: ...
+
+    @property
+    def speeds(self) -> WaveSpeeds:
+        """of the plate"""
+
+    @property
+    def fronts(self) -> list[Front]: ...
+
+    @property
+    def x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """of the interface [nodes]"""
+
+    @property
+    def t_s_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """before the event [nodes]"""
+
+    @property
+    def p_s_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """before the event [nodes]"""
+
+    @property
+    def inside_from_m(self) -> float:
+        """the part of the contact that counts as inside"""
+
+    @property
+    def inside_to_m(self) -> float: ...
 
     @property
     def peak_x_m(self) -> float:
         """of t_s/p_s inside"""
 
     @property
-    def first_onset_x_m(self) -> float:
-        """inside; NaN: none"""
+    def critical_shear_m(self) -> float:
+        """shear at which slip begins inside"""
 
-def outcome(name: str, case: Case, time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, critical_shear_m: float) -> Outcome:
+    @property
+    def ramp_critical_shear_m(self) -> float:
+        """the same by the ramp; NaN where there was none"""
+
+    @property
+    def ramp_onsets(self) -> int:
+        """beginnings of slip at the edges during the ramp"""
+
+    @property
+    def onset_x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """where slip begins, in the order of time [onsets]"""
+
+    @property
+    def onset_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """when it does [onsets]"""
+
+    @property
+    def trigger_work_J_per_m(self) -> float:
+        """NaN where no energies were taken"""
+
+    @property
+    def node_x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """of the plate, of a case with snapshots [nodes]"""
+
+    @property
+    def node_y_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """the same"""
+
+    @property
+    def snapshots(self) -> list[Velocities]:
+        """those of the case; none of a run that was kept"""
+
+class Batch:
+    """Cases that run side by side and share their statics."""
+
+    def __init__(self, threads: int, kept: str | os.PathLike | None) -> None:
+        """kept: folder of the runs that are done."""
+
+    def run(self, cases: Sequence[Case], folders: Sequence[str | os.PathLike | None], done: Callable) -> None:
+        """
+        Runs cases, but for those that were kept; writes each into its folder, if any; calls done(k, event) as case k is done.
+        """
+
+    @property
+    def n_runs(self) -> int:
+        """of all calls"""
+
+    @property
+    def n_quiet(self) -> int:
+        """of them, those that ended before time.end_s since nothing moved"""
+
+def event_of_history(case: Case, time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, critical_shear_m: float) -> BatchEvent:
     """An event from a history of its interface and the tractions before it."""
 
-class Spreads:
-    """Of V_tip/c_L at equal criterion."""
+class ResultFolder:
+    """A folder of results, which come into it when they are complete."""
+
+    def __init__(self, dir: str | os.PathLike, work: str) -> None:
+        """work: only unfinished work of this kind is gone on with."""
 
     @property
-    def cases(self) -> Spread:
-        """between the events"""
+    def unfinished(self) -> pathlib.Path:
+        """where the work goes on"""
 
     @property
-    def fronts(self) -> Spread:
-        """between all their fronts"""
+    def state(self) -> pathlib.Path:
+        """what going on needs, no result"""
 
-class Collapse:
-    """How well each criterion orders the speeds of a set of events."""
+    def require_empty(self, overwrite: bool, resumes: bool) -> None: ...
 
-    @property
-    def static_ratio(self) -> Spreads:
-        """against t_s/p_s"""
+    def begin_or_resume(self) -> None: ...
 
-    @property
-    def dynamic_ratio(self) -> Spreads:
-        """against t_d/p_d"""
+    def publish(self) -> None: ...
 
-    @property
-    def energy_rise(self) -> Spreads:
-        """against (U_r - U_s)/U_s"""
-
-    @property
-    def fit(self) -> ExponentialFit | None:
-        """of V_tip/c_L against the energy rise; None below 10 points"""
-
-    @property
-    def share_in_paper_band(self) -> float: ...
-
-    @property
-    def n_points(self) -> int: ...
-
-class Figure:
-    """A number that a claim states."""
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def value(self) -> float:
-        """in the unit given; NaN where undefined"""
-
-    @property
-    def unit(self) -> str: ...
-
-class Claim:
-    """A claim of Kammer et al. 2012, tested."""
-
-    @property
-    def id(self) -> str: ...
-
-    @property
-    def claim(self) -> str: ...
-
-    @property
-    def paper(self) -> str:
-        """where it stands"""
-
-    @property
-    def measured(self) -> str: ...
-
-    @property
-    def holds(self) -> bool | None:
-        """None where it is not tested"""
-
-    @property
-    def how(self) -> str:
-        """the test"""
-
-    @property
-    def figures(self) -> list[Figure]:
-        """the numbers of `measured`"""
-
-    @property
-    def counts(self) -> bool:
-        """whether the verdict is the claim's"""
-
-    @property
-    def second_test_of(self) -> str:
-        """id of the row whose test this one corrects"""
-
-    @property
-    def why(self) -> str:
-        """that row's test misjudges the claim"""
-
-def collapse(outcomes: Sequence[Outcome], without_tails: bool) -> Collapse: ...
-
-def scorecard(spontaneous: Outcome, left: Outcome, right: Outcome, spontaneous_mu_k_1: Outcome, experiment: tuple[Sequence[float], Sequence[float]] | None) -> list[Claim]:
-    """Every claim against four events; what needs studies is not tested."""
+    def abandon(self) -> None: ...

@@ -286,8 +286,8 @@ def work(options: argparse.Namespace) -> list[str]:
     if options.figure is not None and options.compare is None and not any(fit.has_tip for fit in fits):
         notes.append(f"{options.figure}: not drawn: no gauge has a fit")
     elif options.figure is not None:
+        from slipfront.figures.drawing import write_results
         from slipfront.figures.gauges import draw_comparison, draw_fits
-        from slipfront.figures.picture import write_results
 
         def draw(_: Path) -> Any:
             if options.compare is None:

@@ -20,7 +20,7 @@ from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.given import array, column, in_order, instance, number, refusing, shown, whole
 from slipfront.onsets import NONE, without_marks
-from slipfront.read import FRONT_COLUMNS
+from slipfront.read import FRONT_COLUMNS, ratio
 from slipfront.units import attributes, unit_of
 
 # Arrays by their names, such as a Dataset of OpenRun.
@@ -431,10 +431,13 @@ def criteria(fronts: Arrays) -> xr.Dataset:
     if len({len(values) for values in columns.values()}) > 1:
         lengths = ", ".join(f"{name} {len(values)}" for name, values in columns.items())
         raise CaseError(f"fronts: its arrays differ in length: {lengths}")
-    values = {
-        which.name: xr.Variable(("point",), _core.criterion(which=which, **columns), attributes(which.name))
-        for which in _core.Criterion
+    c = {name: np.asarray(values, dtype=float) for name, values in columns.items()}
+    found = {
+        "static_ratio": ratio(c["t_s_Pa"], c["p_s_Pa"]),
+        "dynamic_ratio": ratio(c["t_d_Pa"], c["p_d_Pa"]),
+        "energy_rise": ratio(c["U_r_J_per_m3"] - c["U_s_J_per_m3"], c["U_s_J_per_m3"]),
     }
+    values = {name: xr.Variable(("point",), each, attributes(name)) for name, each in found.items()}
     coordinates = fronts.coords if isinstance(fronts, xr.Dataset) else {}
     return xr.Dataset(values, {k: v for k, v in coordinates.items() if v.dims == ("point",)})
 
@@ -504,6 +507,24 @@ def spread_at_equal_x(series: Iterable[Series], *, bins: int = 20) -> _core.Spre
     n = whole(bins, "bins", least=1)
     with refusing():
         return _core.spread_at_equal_x(as_series(series), n)
+
+
+def ratio_at_equal_x(a: Series, b: Series, *, bins: int = 20) -> _core.Ratio:
+    """Ratio of the medians of y, a over b, two pairs (x, y), in bins of x as for spread_at_equal_x."""
+    n = whole(bins, "bins", least=1)
+    with refusing():
+        return _core.ratio_at_equal_x(as_series([a, b]), n)
+
+
+def falls_while_rises(
+    s_m: ArrayLike, falling: ArrayLike, rising: ArrayLike, *, min_length_m: float = 5e-3
+) -> np.ndarray:
+    """Lengths of the stretches of a path over which one quantity falls while another rises, by smoothed
+    slopes. s_m: ascending [points]; points where a quantity is NaN are left out."""
+    arrays = array(s_m, "s_m"), array(falling, "falling"), array(rising, "rising")
+    length = number(min_length_m, "min_length_m", least=0)
+    with refusing():
+        return _core.falls_while_rises(*arrays, length)
 
 
 def rank_correlation(x: ArrayLike, y: ArrayLike) -> float:

@@ -11,15 +11,14 @@ from slipfront import _core
 from slipfront.units import unit_of
 
 LISTED = (
-    _core.Collapse,
     _core.ExponentialFit,
     _core.Info,
     _core.Loads,
     _core.MeshChoice,
     _core.NodeSpread,
+    _core.Ratio,
     _core.Rupture,
     _core.Spread,
-    _core.Spreads,
     _core.WaveSpeeds,
     _core.WellPosedness,
 )
@@ -66,27 +65,10 @@ def estimate(value: _core.Estimate) -> str:
     return f"{value.value:.6g} ({value.low:.6g} to {value.high:.6g})"
 
 
-def figure(value: _core.Figure) -> str:
-    unit = "" if value.unit in ("", "1") else f" {value.unit}"
-    return f"{value.name} = {value.value:.6g}{unit}"
-
-
-def claim(value: _core.Claim) -> str:
-    verdict = {True: "holds", False: "does not hold", None: "not tested"}[value.holds]
-    measured = f" ({value.measured})" if value.measured else ""
-    return f"<{value.id} {verdict}: {value.claim}{measured}>"
-
-
 def front(value: _core.Front) -> str:
     x, way = value.x_m, "+x" if value.direction > 0 else "-x"
     path = f"{x[0]:.6g} to {x[-1]:.6g} m" if len(x) else "no points"
     return f"<front {value.id} to {way}: {path}, {len(x)} points, {value.mode}, ends: {value.end}>"
-
-
-def outcome(value: _core.Outcome) -> str:
-    n = len(value.fronts)
-    places = f"t_s/p_s largest at {value.peak_x_m:.6g} m, first onset at {value.first_onset_x_m:.6g} m"
-    return f"<event '{value.name}': {n} fronts of at least 10 mm, {places}>"
 
 
 def interface_state(value: _core.InterfaceState) -> str:
@@ -96,11 +78,8 @@ def interface_state(value: _core.InterfaceState) -> str:
 PRINTED: dict[type, Callable[[Any], str]] = {
     **dict.fromkeys(LISTED, listing),
     _core.Estimate: estimate,
-    _core.Figure: figure,
-    _core.Claim: claim,
     _core.Front: front,
     _core.InterfaceState: interface_state,
-    _core.Outcome: outcome,
 }
 for kind, shown in PRINTED.items():
     kind.__repr__ = shown  # type: ignore[method-assign, assignment]

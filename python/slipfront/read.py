@@ -105,6 +105,11 @@ def ratio(numerator: np.ndarray, denominator: np.ndarray) -> np.ndarray:
     return out
 
 
+def even(n: int, most: int) -> np.ndarray:
+    """At most so many of n, the first and the last among them."""
+    return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
+
+
 def median(values: np.ndarray) -> float:
     """Of those that are defined; NaN without any."""
     known = values[np.isfinite(values)]
@@ -628,16 +633,6 @@ def read_run(folder: Path, read_its_history: HistoryReader = read_history) -> Ru
         fields=read_fields(folder / "fields.vtkhdf") if has_fields else None,
         balance=read_balance(folder / "energy.csv", growing, blew_up),
     )
-
-
-def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Measured points (t_s / p_s, V_tip / c_L) from the columns static_ratio and v_over_c_L or v_m_per_s."""
-    table = read_table(file, by_hand=True)
-    if "v_over_c_L" in table.header:
-        return table.numbers("static_ratio"), table.numbers("v_over_c_L")
-    if "v_m_per_s" in table.header:
-        return table.numbers("static_ratio"), table.numbers("v_m_per_s") / c_L_m_per_s
-    raise DataError(f"{file}: no column 'v_over_c_L' or 'v_m_per_s'")
 
 
 def main(arguments: list[str] | None = None) -> int:

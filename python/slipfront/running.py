@@ -104,6 +104,11 @@ def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping
     return _core.Case(path(case, "case"), pairs)
 
 
+def case(case: CaseLike, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> _core.Case:
+    """A case with its changes, given as for `run`, checked as far as its keys tell; `toml` has every key."""
+    return make_case(case, changes, tables)
+
+
 class Bar:
     """Progress on a terminal or in a notebook; nothing elsewhere, or where tqdm is not installed."""
 

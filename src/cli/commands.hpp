@@ -15,8 +15,6 @@ namespace slipfront::cli {
 
 /// @param processes  that share a run with this one; null where it is alone
 void add_run(CLI::App& app, Processes& processes);
-void add_reproduce(CLI::App& app);
-void add_study(CLI::App& app);
 void add_info(CLI::App& app);
 void add_fracture(CLI::App& app);
 void add_bench(CLI::App& app);

@@ -30,7 +30,7 @@ struct PythonCommand {
 
 constexpr std::array python_commands = {
     PythonCommand{nullptr, "report",
-                  "Write a page (HTML) to look at a run, a study or a reproduction in a browser"},
+                  "Write a page (HTML) to look at a run or a study in a browser"},
     PythonCommand{nullptr, "fronts", "Find fronts in a history of slip along an interface, from any source"},
     PythonCommand{nullptr, "gauges",
                   "Fit the field of a front's tip to strain gauges, or compare them with a run"},
@@ -104,6 +104,9 @@ void put_first_on_python_path(const fs::path& folder) {
 }  // namespace
 
 void add_python_commands(CLI::App& app) {
+  CLI::App* study = app.add_subcommand("study", "Vary the numerical parameters of a case");
+  study->group("Studies");
+  study->require_subcommand(1);
   for (const auto& [group, name, description] : python_commands)
     if (group == nullptr)
       app.add_subcommand(name, description)->group("Results, in Python");

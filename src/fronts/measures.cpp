@@ -62,27 +62,6 @@ double length_m(const Front& front) {
   return front.points.empty() ? 0.0 : std::abs(front.points.back().x_m - front.points.front().x_m);
 }
 
-double relative_energy_rise(const FrontPoint& point) {
-  return (point.U_r_J_per_m3 - point.U_s_J_per_m3) / point.U_s_J_per_m3;
-}
-
-SpeedSummary speed_summary(const Front& front, double leave_out_m) {
-  SpeedSummary summary;
-  double sum = 0;
-  for (const FrontPoint& point : front.points) {
-    const double v = point.v_tip_m_per_s;
-    if (std::isnan(v) || std::abs(point.x_m - front.points.front().x_m) < leave_out_m) continue;
-    if (summary.n_points == 0 || v > summary.max_m_per_s) {
-      summary.max_m_per_s = v;
-      summary.x_of_max_m = point.x_m;
-    }
-    sum += v;
-    ++summary.n_points;
-  }
-  if (summary.n_points > 0) summary.mean_m_per_s = sum / summary.n_points;
-  return summary;
-}
-
 std::vector<double> local_slopes(std::span<const double> s, std::span<const double> y, double half_width,
                                  int side_points) {
   SLIPFRONT_ASSERT(s.size() == y.size(), "one value for each place");
@@ -149,16 +128,6 @@ std::vector<Stretch> find_stretches(std::span<const double> s_m, std::span<const
   }
   close();
   return stretches;
-}
-
-std::vector<Stretch> speed_falls_ratio_rises(const Front& front, const StretchOptions& options) {
-  std::vector<double> s_m, speed, ratio;
-  for (const FrontPoint& point : front.points) {
-    s_m.push_back(std::abs(point.x_m - front.points.front().x_m));
-    speed.push_back(point.v_tip_m_per_s);
-    ratio.push_back(point.t_d_Pa / point.p_d_Pa);
-  }
-  return find_stretches(s_m, speed, ratio, options);
 }
 
 }  // namespace slipfront::fronts

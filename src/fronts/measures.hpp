@@ -12,18 +12,6 @@ namespace slipfront::fronts {
 /// Distance from a front's first point to its last.
 double length_m(const Front& front);
 
-/// (U_r - U_s) / U_s; NaN where undefined.
-double relative_energy_rise(const FrontPoint& point);
-
-/// Speeds of a front's points, those nearer to its start than a given distance left out.
-struct SpeedSummary {
-  double mean_m_per_s = nan;  ///< over the points with a defined speed; NaN if there are none
-  double max_m_per_s = nan;
-  double x_of_max_m = nan;
-  int n_points = 0;
-};
-SpeedSummary speed_summary(const Front& front, double leave_out_m);
-
 /// Smoothed dy/ds at every point: the slope of the least-squares line through the points with |s - s_i| <=
 /// half_width, or through the nearest side_points on either side where those reach farther (fewer at the ends
 /// of the series). Points with NaN in y are not used but get a slope, too. NaN where fewer than 3 points can
@@ -51,8 +39,5 @@ struct StretchOptions {
 /// @param s_m  ascending distance along the path; falling and rising have its size.
 std::vector<Stretch> find_stretches(std::span<const double> s_m, std::span<const double> falling,
                                     std::span<const double> rising, const StretchOptions& options = {});
-
-/// Stretches of a front where v_tip falls while t_d/p_d rises; indices are those of front.points.
-std::vector<Stretch> speed_falls_ratio_rises(const Front& front, const StretchOptions& options = {});
 
 }  // namespace slipfront::fronts

@@ -11,6 +11,7 @@ namespace nb = nanobind;
 
 void bind_errors(nb::module_& module);
 void bind_cases(nb::module_& module);
+void bind_batch(nb::module_& module);
 void bind_observers(nb::module_& module);
 void bind_compose(nb::module_& module);
 void bind_fronts(nb::module_& module);
@@ -18,6 +19,5 @@ void bind_fracture(nb::module_& module);
 void bind_passages(nb::module_& module);
 void bind_fits(nb::module_& module);
 void bind_gauges(nb::module_& module);
-void bind_kammer2012(nb::module_& module);
 
 }  // namespace slipfront::python

@@ -69,9 +69,10 @@ struct Session {
   run::SessionOptions options;
   Watcher watcher;
 
+  /// @param within  of whose unfinished work it is a part, or null
   Session(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress,
-          const Functions& observers)
-      : in_use(dir), folder(dir, run::run_work), watcher(std::move(progress)) {
+          const Functions& observers, const results::ResultFolder* within = nullptr)
+      : in_use(dir), folder(dir, run::run_work, within), watcher(std::move(progress)) {
     if (threads && *threads < 1) throw UserError("threads is {}; it must be at least 1", *threads);
     options.threads = threads;
     options.keep_every_wall_s = checkpoint_every_s;
@@ -101,8 +102,8 @@ void show_no_event(std::size_t /*number*/, const record::SequenceEvent& /*event*
 /// @param config  the case that was given, or that with another friction law
 void run_config(const input::CaseFile& given, const input::Case& config, const fs::path& dir, bool overwrite,
                 std::optional<int> threads, double checkpoint_every_s, nb::object progress,
-                const Functions& observers = {}) {
-  Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
+                const Functions& observers = {}, const results::ResultFolder* within = nullptr) {
+  Session session(dir, threads, checkpoint_every_s, std::move(progress), observers, within);
   session.folder.require_empty(overwrite);
   session.complete([&] {
     return given.placing_errors([&]() -> std::optional<run::Finished> {
@@ -116,9 +117,10 @@ void run_config(const input::CaseFile& given, const input::Case& config, const f
 }
 
 void run_case(const input::CaseFile& given, const fs::path& dir, bool overwrite, std::optional<int> threads,
-              double checkpoint_every_s, nb::object progress, const Functions& observers) {
+              double checkpoint_every_s, nb::object progress, const Functions& observers,
+              const results::ResultFolder* within) {
   run_config(given, given.config(), dir, overwrite, threads, checkpoint_every_s, std::move(progress),
-             observers);
+             observers, within);
 }
 
 /// An array of Python's own: who is called may keep it.
@@ -363,9 +365,13 @@ void bind_cases(nb::module_& module) {
            nb::call_guard<nb::gil_scoped_release>(),
            "Of slow uniform sliding of the case's materials under its friction.")
       .def("run", &run_case, "dir"_a, "overwrite"_a, "threads"_a.none(), "checkpoint_every_s"_a,
-           "progress"_a.none(), "observers"_a,
+           "progress"_a.none(), "observers"_a, "within"_a.none() = nb::none(),
            "Runs the case into a folder; progress(part, step, total) is called at times, each of the "
-           "observers with an InterfaceState at its interval, s.");
+           "observers with an InterfaceState at its interval, s. within: the ResultFolder of whose work the "
+           "folder is a part.")
+      .def(
+          "check", [](const C& c) { c.placing_errors([&] { return run::check(c.config()); }); },
+          "What can be checked without solving anything: memory, geometry; raises CaseError.");
   module.def(
       "run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "evolve"_a.none(), "progress"_a.none(),
       "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a "

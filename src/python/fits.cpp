@@ -44,6 +44,13 @@ fronts::Spread spread_at_equal_x(const GivenSeries& given, int bins) {
   return fronts::spread_at_equal_x(series_of(given), bins);
 }
 
+fronts::Ratio ratio_at_equal_x(const GivenSeries& given, int bins) {
+  require(bins > 0, "bins must be above 0");
+  require(given.size() == 2, "two series");
+  const auto series = series_of(given);
+  return fronts::ratio_at_equal_x(series[0], series[1], bins);
+}
+
 double rank_correlation(const Values& x, const Values& y) {
   require_length(y, x.size(), "y");
   return fronts::rank_correlation(view(x), view(y));
@@ -69,7 +76,7 @@ std::tuple<Array, Array, Array, Array> curve(const fronts::ExponentialFit& fit) 
 }
 
 void bind_results(nb::module_& module) {
-  using fronts::CurvePoint, fronts::Estimate, fronts::ExponentialFit, fronts::Spread;
+  using fronts::CurvePoint, fronts::Estimate, fronts::ExponentialFit, fronts::Ratio, fronts::Spread;
   nb::class_<Estimate>(module, "Estimate", "A value with a two-sided confidence interval.")
       .def_ro("value", &Estimate::value)
       .def_ro("low", &Estimate::low)
@@ -88,6 +95,11 @@ void bind_results(nb::module_& module) {
               "median over the bins; NaN where no bin has two series")
       .def_ro("rms_relative", &Spread::rms_relative, "of all points of a bin about their mean")
       .def_ro("n_bins", &Spread::n_bins, "bins with at least two series");
+  nb::class_<Ratio>(module, "Ratio", "Ratio of the medians of y of two series at equal x.")
+      .def_ro("median", &Ratio::median, "over the bins; NaN where no bin has both series")
+      .def_ro("low", &Ratio::low, "the smallest of a bin")
+      .def_ro("high", &Ratio::high, "the largest")
+      .def_ro("n_bins", &Ratio::n_bins, "bins that both series reach");
 }
 
 }  // namespace
@@ -97,6 +109,7 @@ void bind_fits(nb::module_& module) {
   module.def("fit_exponential", &fit_exponential, "series"_a, "resamples"_a, "block_points"_a, "confidence"_a,
              "seed"_a, "Least squares over all points of all series (x, y).");
   module.def("spread_at_equal_x", &spread_at_equal_x, "series"_a, "bins"_a);
+  module.def("ratio_at_equal_x", &ratio_at_equal_x, "series"_a, "bins"_a);
   module.def("rank_correlation", &rank_correlation, "x"_a, "y"_a, "Spearman's.");
 }
 

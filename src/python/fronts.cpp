@@ -140,6 +140,19 @@ Array energy_density(const Values& t_Pa, const Values& p_Pa, double E_Pa, double
   return to_array(std::move(density));
 }
 
+/// Neighbouring places over which one quantity falls while another rises, by the lengths of the stretches.
+Array falls_while_rises(const Values& s_m, const Values& falling, const Values& rising, double min_length_m) {
+  require_ascending(view(s_m), "s_m");
+  require_length(falling, s_m.size(), "falling");
+  require_length(rising, s_m.size(), "rising");
+  fronts::StretchOptions options;
+  options.min_length_m = min_length_m;
+  std::vector<double> lengths_m;
+  for (const auto& stretch : fronts::find_stretches(view(s_m), view(falling), view(rising), options))
+    lengths_m.push_back(stretch.length_m);
+  return to_array(std::move(lengths_m));
+}
+
 }  // namespace
 
 void bind_fronts(nb::module_& module) {
@@ -150,6 +163,8 @@ void bind_fronts(nb::module_& module) {
   module.def("find_fronts_in_history", &find_fronts_in_history, "time_s"_a, "x_m"_a, "slip_rate_m_per_s"_a,
              "t_Pa"_a, "p_Pa"_a, "t_s_Pa"_a, "p_s_Pa"_a, "threshold_m_per_s"_a, "tip_at_peak"_a, "options"_a,
              "Fronts in a history of the interface, matrices [times, nodes].");
+  module.def("falls_while_rises", &falls_while_rises, "s_m"_a, "falling"_a, "rising"_a, "min_length_m"_a,
+             "Lengths of stretches of a path over which one quantity falls while another rises.");
   module.def("energy_density_J_per_m3", &energy_density, "t_Pa"_a, "p_Pa"_a, "youngs_modulus_Pa"_a,
              "poissons_ratio"_a, "plane_strain"_a, "Kammer et al. 2012, Eq. 2.");
 }

@@ -6,7 +6,7 @@ import re
 import pytest
 from common import ROOT, refusal, require_done, sets
 
-COMMANDS = ["run", "reproduce", "study", "info", "fracture", "bench", "validate", "new", "keys"]
+COMMANDS = ["run", "study", "info", "fracture", "bench", "validate", "new", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "gauges", "sweep"]
 PYTHON_STUDIES = ["study convergence", "study interface-step"]
 CASES = sorted((ROOT / "papers/kammer2012").glob("*.toml"))
@@ -52,12 +52,10 @@ def test_version(program):
         (["info"], "CASE"),
         (["validate"], "CASE"),
         (["new", "glue"], "two-bodies"),
-        (["reproduce", "--threads", "0", "-o", "out"], "--threads"),
-        (["reproduce", "--threads", "two", "-o", "out"], "--threads"),
+        (["run", "coarse.toml", "--threads", "0", "-o", "out"], "--threads"),
+        (["run", "coarse.toml", "--threads", "two", "-o", "out"], "--threads"),
         (["run", "--checkpoint-every", "-1", "-o", "out"], "--checkpoint-every: -1 is not"),
         (["run", "--checkpoint-every-simulated", "nan"], "--checkpoint-every-simulated: nan is not"),
-        (["reproduce", "coarse.toml", "-o", "out"], "coarse.toml"),
-        (["reproduce", "--sensitivity", "--regularised", "-o", "out"], "--sensitivity"),
     ],
 )
 def test_wrong_command_lines(program, coarse, arguments, expected):

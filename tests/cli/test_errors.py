@@ -89,7 +89,6 @@ def tree(folder):
     return {path: path.read_bytes() if path.is_file() else path.is_symlink() for path in folder.rglob("*")}
 
 
-@pytest.mark.parametrize("command", [["run", "coarse.toml"], ["reproduce", "--quick"]], ids=lambda c: c[0])
 @pytest.mark.parametrize(
     "place, expected",
     [
@@ -102,12 +101,12 @@ def tree(folder):
         ("lost", "choose another place"),
     ],
 )
-def test_output_folder_that_is_refused(program, coarse, tmp_path, command, place, expected):
+def test_output_folder_that_is_refused(program, coarse, tmp_path, place, expected):
     (tmp_path / "filled").mkdir()
     (tmp_path / "filled/notes.txt").write_text("mine")
     (tmp_path / "lost").symlink_to("nowhere")
     before = tree(tmp_path)
-    line = refusal(program(*command, "-o", place))
+    line = refusal(program("run", "coarse.toml", "-o", place))
     assert place in line and expected in line
     assert ("--overwrite" in line) == (place == "filled")
     assert tree(tmp_path) == before
@@ -207,26 +206,6 @@ def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
 
 
 # --- Measured points for claim E1
-
-
-@pytest.mark.parametrize(
-    "text, place, words",
-    [
-        ("a,b\n1,2\n", ":1: ", ["static_ratio"]),
-        ("static_ratio,v_over_c_L\n1,fast\n", ":2: ", ["v_over_c_L", "number"]),
-        ("static_ratio,v_over_c_L\n1\n", ":2: ", ["v_over_c_L", "number"]),
-        ("# none\nstatic_ratio,v_over_c_L\n", ": ", ["no points"]),
-        (None, ": ", []),
-    ],
-)
-def test_wrong_experiment_file(program, tmp_path, text, place, words):
-    if text:
-        (tmp_path / "points.csv").write_text(text)
-    printed = refusal(program("reproduce", "--quick", "-o", "out", "--experiment", "points.csv"))
-    assert printed.startswith(f"points.csv{place}")
-    for word in words:
-        assert word in printed
-    assert not (tmp_path / "out").exists()
 
 
 # --- Runs that go on

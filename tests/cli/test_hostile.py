@@ -62,9 +62,8 @@ def test_deaths_at_random_moments(bench, kind):
     all_hold(kills.trials(bench, 2, kinds=(kind,)))
 
 
-@pytest.mark.parametrize("kind, n", [("reproduce", 2), ("study", 4)])
-def test_cut_off_and_given_again(bench, kind, n):
-    all_hold(repeats.trials(bench, n, kinds=(kind,)))
+def test_cut_off_and_given_again(bench):
+    all_hold(repeats.trials(bench, 4))
 
 
 def test_damaged_states(bench):

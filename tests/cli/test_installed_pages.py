@@ -8,7 +8,7 @@ import pytest
 from common import call, require_done
 from test_commands import COMMANDS, PYTHON_COMMANDS, PYTHON_STUDIES
 
-STUDIES = ["convergence", "interface-step", "open-choices", "base"]
+STUDIES = ["convergence", "interface-step"]
 
 
 @pytest.fixture
@@ -80,12 +80,12 @@ def test_man_finds_nothing_to_warn_of(page):
 
 def test_completion_of_commands(complete):
     assert complete("slipfront", "") == {*COMMANDS, *PYTHON_COMMANDS}
-    assert complete("slipfront", "re") == {"report", "reproduce"}
+    assert complete("slipfront", "re") == {"report"}
     assert complete("slipfront", "study", "") == set(STUDIES)
     assert complete("slipfront", "study", "co") == {"convergence"}
 
 
-@pytest.mark.parametrize("command", [["run"], ["bench"], ["study", "base"]], ids=" ".join)
+@pytest.mark.parametrize("command", [["run"], ["bench"]], ids=" ".join)
 def test_completion_of_options(program, complete, command):
     assert complete("slipfront", *command, "--") == options_in_help(program, *command)
 

@@ -5,7 +5,6 @@ import contextlib
 import csv
 import ctypes
 import fcntl
-import json
 import math
 import os
 import pty
@@ -25,14 +24,12 @@ from common import (
     finished,
     freeze,
     one_line,
-    refusal,
     require_done,
     require_same_bytes,
     run_json,
     sets,
     settings,
     wait_until,
-    wait_until_or_over,
 )
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
 
@@ -322,62 +319,6 @@ def test_progress_on_a_terminal(program, coarse):
     assert text.endswith("\n")
 
 
-def test_reproduce_quick(program, tmp_path):
-    points = "".join(f"{0.5 + 0.05 * k},1.0\n" for k in range(16))
-    (tmp_path / "points.csv").write_text("# by hand\nstatic_ratio,v_over_c_L\n" + points)
-    options = ("--threads", "2", "--experiment", "points.csv", "--sensitivity")
-    result = require_done(program("reproduce", "--quick", "-o", "out", *options))
-    claims = json.loads((tmp_path / "out/scorecard.json").read_text())
-    assert next(claim for claim in claims if claim["id"] == "E1")["holds"] is not None
-    assert {f"C{k}" for k in range(1, 26)} | {"E1"} <= {claim["id"] for claim in claims}
-    for claim in claims:
-        held = "used to choose" if claim.get("used_to_choose") else "holds"
-        verdict = {True: held, False: "does not hold", None: "not tested"}[claim["holds"]]
-        assert re.search(
-            rf"^{re.escape(claim['id'])} +{verdict} +{re.escape(claim['claim'])}", result.stdout, re.MULTILINE
-        )
-        assert claim["measured"] in result.stdout
-    assert "at plate.element_size_m = 0.004 it moves by" in result.stdout
-    assert next(c for c in claims if c["id"] == "C11")["mesh_variation"]["differences"][0] > 0
-
-    def judged(claim):
-        return "used" if claim["holds"] and claim.get("used_to_choose") else claim["holds"]
-
-    counted = [judged(claim) for claim in claims if claim["counts"] and claim["id"] != "E1"]
-    first = [judged(claim) for claim in claims if re.fullmatch(r"C\d+", claim["id"])]
-    assert len(counted) == len(first) == 25
-    assert (
-        f"Of the paper's 25 claims {counted.count(True)} hold, {counted.count(False)} do not, "
-        in result.stdout
-    )
-    assert (
-        f"by the first tests alone {first.count(True)} hold, {first.count(False)} do not, " in result.stdout
-    )
-    for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
-        assert files_in(tmp_path / "out" / folder) >= FILES
-
-
-@pytest.mark.slow
-def test_reproduce_can_be_interrupted(program, tmp_path):
-    """Once its events are done, before what else it computes."""
-    names = ("spontaneous", "left", "right", "spontaneous_mu_k_1.0")
-    events = [tmp_path / "out/unfinished" / name for name in names]
-    process = program.start("reproduce", "-o", "out")
-    # Its list of checksums is a run's last file.
-    wait_until_or_over(lambda: all((e / "checksums.sha256").exists() for e in events), process)
-    process.send_signal(signal.SIGINT)
-    ended = finished(process)
-    if ended.returncode == 0:  # it was done before
-        assert (tmp_path / "out/scorecard.json").exists()
-        return
-    assert (ended.returncode, ended.stdout) == (128 + signal.SIGINT, "")
-    assert "interrupted" in ended.stderr.splitlines()[-1]
-    for folder in events:
-        assert files_in(folder) >= FILES
-        assert run_json(folder)["end"] != "interrupted"
-    assert not (tmp_path / "out/scorecard.json").exists()
-
-
 PRESTRESSED = """
 [plate]
 width_m = 0.1
@@ -419,31 +360,3 @@ def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
     require_done(program("run", "out/case.resolved.toml", "-o", "again", "-q"))
     same = ("fronts.csv", "fracture.csv", "energy.csv", "static.csv", "interface.h5", "case.resolved.toml")
     require_same_bytes(tmp_path / "out", tmp_path / "again", *same)
-
-
-def test_open_choices_are_judged_and_handed_to_the_scorecard(program, tmp_path):
-    result = require_done(program("study", "open-choices", "--quick", "-o", "choices", "--threads", "2"))
-    study = json.loads((tmp_path / "choices/open_choices.json").read_text())
-    samples = rows(tmp_path / "choices/open_choices.csv")
-    assert len(samples) == study["n_samples"]
-    assert f"{study['n_samples']} samples of {len(study['choices'])} choices" in result.stdout
-    # Shares of the matrix are those of the table.
-    for row in study["matrix"]:
-        verdicts = [r[row["id"]] for r in samples if r["set"] == "all" and r[row["id"]]]
-        if row["id"] != "C25":  # tested where the other constraining claims hold
-            assert row["share_of_all"] == pytest.approx(verdicts.count("holds") / len(verdicts))
-        assert row["holds"] == (samples[0][row["id"]] == "holds")
-    require_done(program("reproduce", "--quick", "-o", "out", "--open-choices", "choices"))
-    claims = {c["id"]: c for c in json.loads((tmp_path / "out/scorecard.json").read_text())}
-    assert f"of {study['n_triggers']} triggers" in claims["C11b"]["measured"]
-    for arguments, said in (
-        (["--quick", "-o", "choices", "--overwrite", "--open-choices", "choices"], "choose another"),
-        (["-o", "again", "--open-choices", "choices"], "is a quick study"),
-        (["--quick", "-o", "again", "--open-choices", ""], "is empty; give a path"),
-        (["--quick", "-o", "again", "--experiment", ""], "is empty; give a path"),
-    ):
-        assert said in refusal(program("reproduce", *arguments))
-        assert not (tmp_path / "again").exists()
-    (tmp_path / "choices/open_choices.csv").write_text("changed")
-    refused = program("reproduce", "--quick", "-o", "again", "--open-choices", "choices")
-    assert "choices/open_choices.csv" in refusal(refused)

@@ -213,7 +213,6 @@ TEST(TipTractions, LinearInTipPosition) {
     const double U_r = (2 * 1.37 * 5.2e6 * 5.2e6 + 4e6 * 4e6) / 5.2e9;
     EXPECT_NEAR(point.U_s_J_per_m3, U_s, 1e-9 * U_s);
     EXPECT_NEAR(point.U_r_J_per_m3, U_r, 1e-9 * U_r);
-    EXPECT_NEAR(relative_energy_rise(point), (U_r - U_s) / U_s, 1e-8);
   }
 }
 
@@ -322,25 +321,6 @@ TEST(SlippingShare, SlipAgain) {
   EXPECT_DOUBLE_EQ(points[166].slipping_share, 7 * h / x[166]);
   // Once the front is at node 165, in contact with its slipping zone.
   EXPECT_DOUBLE_EQ(pulse_and_slip_again(160, 110.01e-6)[166].slipping_share, 1.0);
-}
-
-TEST(SpeedSummary, LeavesOutTheStart) {
-  Front front;
-  const double speed[] = {nan, 3000, 1000, nan, 1400, 1200};
-  for (int k = 0; k < 6; ++k) {
-    FrontPoint point;
-    point.x_m = 0.1 - 2e-3 * k;
-    point.v_tip_m_per_s = speed[k];
-    front.points.push_back(point);
-  }
-  const auto summary = speed_summary(front, 3.9e-3);
-  EXPECT_EQ(summary.n_points, 3);
-  EXPECT_DOUBLE_EQ(summary.mean_m_per_s, 1200);
-  EXPECT_DOUBLE_EQ(summary.max_m_per_s, 1400);
-  EXPECT_DOUBLE_EQ(summary.x_of_max_m, 0.092);
-  EXPECT_DOUBLE_EQ(speed_summary(front, 0).max_m_per_s, 3000);
-  EXPECT_TRUE(std::isnan(speed_summary(front, 1).mean_m_per_s));
-  EXPECT_DOUBLE_EQ(length_m(front), 0.01);
 }
 
 TEST(LocalSlopes, WindowReachesHalfWidth) {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of tractions, of friction and of measured speeds: what is taken must hold what their readers
-// promise.
+// Tables of tractions and of friction: what is taken must hold what their readers promise.
 #include <cmath>
 
 #include "fuzz.hpp"
-#include "input/experiment.hpp"
 #include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
 #include "interface/friction/slip_weakening.hpp"
@@ -33,15 +31,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       for (const double value : values)
         fuzz::require(value >= 0 && value <= 1e3, "a parameter that should be refused");
     }
-  });
-  fuzz::takes([&] {
-    constexpr double c_L_m_per_s = 2400;
-    const auto points = input::read_experiment(file, c_L_m_per_s);
-    fuzz::require(!points.static_ratio.empty() && points.static_ratio.size() == points.v_over_c_L.size(),
-                  "columns differ in length");
-    for (std::size_t k = 0; k < points.static_ratio.size(); ++k)
-      fuzz::require(std::isfinite(points.static_ratio[k]) && std::isfinite(points.v_over_c_L[k]),
-                    "a point that should be refused");
   });
   return 0;
 }

@@ -26,11 +26,6 @@ def parts(bench):
     yield f"failing calls and deaths, {setting.name}", faults.trials(setting, AT_EVERY_CALL, among=slice(40))
     setting = faults.verify_setting(bench)
     yield f"failing calls and deaths, {setting.name}", faults.trials(setting, faults.FAILURES + faults.DEATHS)
-    setting = faults.reproduce_setting(bench)
-    yield (
-        f"deaths at the end, {setting.name}",
-        faults.trials(setting, faults.DEATHS[:1], every=20, among=slice(-400, None)),
-    )
     if reason := disk.is_allowed(bench):
         print(f"small and full disks: left out, no file system can be mounted here: {reason}")
     else:

@@ -149,12 +149,6 @@ def verify_setting(bench):
     return Setting(bench, "verify", ["--quick", "symmetry"], old_folder)
 
 
-def reproduce_setting(bench):
-    """Many folders, over a run's results."""
-    old_folder = bench.result(bench.case(EARLIER))
-    return Setting(bench, "reproduce", ["reproduce", "--quick", "--overwrite"], old_folder)
-
-
 def trials(setting, kinds, every=1, among=slice(None)):
     """For each kind every so many of the calls, or of some of them; different ones for each kind."""
     calls = setting.calls()

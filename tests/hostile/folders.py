@@ -52,8 +52,6 @@ def while_one_runs(setting):
         for command in (
             ("run", case, "-o", folder, "--overwrite"),
             ("run", "--restart", folder),
-            ("reproduce", "--quick", "--overwrite", "-o", folder),
-            ("study", "base", "--quick", "--overwrite", "-o", folder),
         ):
             line = one_line(bench.run(*command), 2)
             require(f"in use by process {process.pid}" in line, line)

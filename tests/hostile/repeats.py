@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reproductions, studies and verifications that are cut off, and given again until they are done."""
+"""Verifications that are cut off, and given again until they are done."""
 
 import random
 import signal
@@ -10,27 +10,22 @@ from common import finished, require_done
 from .trials import Trial, alone, remove, require, require_same
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
-KINDS = ("reproduce", "study", "verify")
+COMMAND = ("--quick", "rayleigh_wave", "symmetry", "growing_modes", "column", "impact")
 
 
 class Setting:
-    def __init__(self, bench, kind):
-        self.bench = bench = bench.of_verifications() if kind == "verify" else bench
-        self.command = {
-            "reproduce": ["reproduce", "--quick"],
-            "study": ["study", "base", "--quick", "-q"],
-            "verify": ["--quick", "rayleigh_wave", "symmetry", "growing_modes", "column", "impact"],
-        }[kind]
+    def __init__(self, bench):
+        self.bench = bench = bench.of_verifications()
         folder = bench.folder()
         start = time.monotonic()
-        process = bench.run(*self.command, "-o", folder)
+        process = bench.run(*COMMAND, "-o", folder)
         self.duration_s = time.monotonic() - start
         require_done(process)
         self.expected = alone(folder)
 
     def interrupted(self, folder, dice):
         """@return whether it is done"""
-        process = self.bench.start(*self.command, "-o", folder)
+        process = self.bench.start(*COMMAND, "-o", folder)
         time.sleep(dice.uniform(0, self.duration_s))
         sent = dice.choice(SIGNALS)
         process.send_signal(sent)
@@ -53,14 +48,13 @@ class Setting:
         for _ in range(dice.randint(1, 4)):
             done = done or self.interrupted(folder, dice)
         if not done:
-            self.require_done(self.bench.run(*self.command, "-o", folder))
+            self.require_done(self.bench.run(*COMMAND, "-o", folder))
         require_same(alone(folder), self.expected, "other results")
         remove(folder.parent)
 
 
-def trials(bench, n, seed=1, kinds=KINDS):
-    """As many of each kind."""
-    for kind in kinds:
-        setting = Setting(bench, kind)
-        for k in range(seed, seed + n):
-            yield Trial(f"{kind}, seed {k}", lambda setting=setting, k=k: setting.trial(k))
+def trials(bench, n, seed=1):
+    """As many."""
+    setting = Setting(bench)
+    for k in range(seed, seed + n):
+        yield Trial(f"verify, seed {k}", lambda k=k: setting.trial(k))

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results that are changed, what `python -m slipfront.figures` says of them, and what it draws."""
+"""Results that are changed, what commands that draw say of them, and what they draw."""
 
 from __future__ import annotations
 
 import json
 
+import draw
 from matplotlib.figure import Figure
 from slipfront.figures.__main__ import main
 
@@ -37,11 +38,16 @@ def one_line(capsys) -> str:
     return error
 
 
-def one_error(capsys, *arguments) -> str:
-    assert main([str(a) for a in arguments]) == 2
+def one_error(capsys, *arguments, command=main) -> str:
+    assert command([str(a) for a in arguments]) == 2
     error = one_line(capsys)
-    assert error.startswith("slipfront.figures: error: ")
+    assert error.startswith(("slipfront.figures: error: ", "draw.py: error: "))
     return error
+
+
+def error_of_paper(capsys, *arguments) -> str:
+    """Of the command that draws the paper's figures."""
+    return one_error(capsys, *arguments, command=draw.main)
 
 
 def gids(drawn, panel: int = 0) -> set[str]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
-from slipfront.report.command import main
+from slipfront.report.command import KINDS, Kind, main
 
 
-def page_of(folder: Path, file: Path | None = None) -> str:
+def page_of(folder: Path, file: Path | None = None, kinds: Sequence[Kind] = KINDS) -> str:
     """The page of a folder, without the library in it."""
-    assert main([str(folder), *(["-o", str(file)] if file else [])]) == 0
+    assert main([str(folder), *(["-o", str(file)] if file else [])], kinds) == 0
     text = (file or folder / "report.html").read_text(encoding="utf-8")
     return re.sub(r"<script>[\s\S]*?</script>", "<script></script>", text)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes a made-up output folder of `slipfront reproduce`: the right files and shapes, invented contents."""
+"""Writes a made-up output folder of `reproduce.py`: the right files and shapes, invented contents."""
 
 from __future__ import annotations
 

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from common import ROOT, call, require_done
-from refusals import one_line
-from slipfront.figures import bases
+from common import ROOT, WITH_PACKAGE, call, refusal, require_done
+from drawing import bases
 from synthetic import write_checksums
 
 HEADER = "base,event,direction,x_m,v_tip_over_c_L,t_d_over_p_d,energy_rise,p_r_over_p_s,in_tail"
@@ -56,17 +55,27 @@ def test_points_are_drawn_by_base_and_direction(study):
     assert points("rigid:x_mm:1:0") == ([], [])
 
 
-def test_a_damaged_study_is_refused(study, capsys, tmp_path):
-    (study / "bases_points.csv").write_text("changed")
-    assert bases.main([str(tmp_path / "f.png"), str(study)]) == 2
-    assert "bases_points.csv" in one_line(capsys)
-    assert not (tmp_path / "f.png").exists()
-
-
-def test_the_page_has_a_row_per_base(study, tmp_path):
+@pytest.fixture
+def page(tmp_path) -> Path:
     page = tmp_path / "page.md"
     page.write_text("above\n<!-- table -->\nold\n<!-- end of table -->\nbelow\n")
-    require_done(call(sys.executable, ROOT / "scripts/bases-page.py", study, page))
+    return page
+
+
+def renewed(study, page):
+    script = ROOT / "papers/kammer2012/bases_page.py"
+    return call(sys.executable, script, study, "--page", page, env=WITH_PACKAGE)
+
+
+def test_a_damaged_study_is_refused(study, page):
+    (study / "bases_points.csv").write_text("changed")
+    assert "bases_points.csv" in refusal(renewed(study, page))
+    assert "\nold\n" in page.read_text() and not (page.parent / "figures/page.png").exists()
+
+
+def test_the_page_has_a_row_per_base(study, page):
+    require_done(renewed(study, page))
+    assert (page.parent / "figures/page.png").is_file()
     text = page.read_text()
     assert (
         "| soft | 0.94 (0.90 to 1.00) | -25.0 %, 2.0 % | 30 % of 2 | 0.20, 0.30 | 0.50, 0.50, 0.50 |" in text

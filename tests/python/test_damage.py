@@ -15,11 +15,17 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
-from common import HANG_S
-from slipfront.figures import interface_step, open_choices, verification
+from common import HANG_S, loaded_script
+from draw import main as draw_paper
+from drawing import open_choices
+from drawing.results import read_results
+from report import KINDS as OF_PAPER
+from slipfront import command
+from slipfront.figures import interface_step
 from slipfront.figures.__main__ import main
-from slipfront.figures.results import read_results
+from slipfront.figures.drawing import write_results
 from slipfront.files import DataError
+from slipfront.report.command import KINDS
 from slipfront.report.command import main as report
 from synthetic import interrupt, seal, write_output
 from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
@@ -117,7 +123,7 @@ def output(small, tmp_path):
 
 @pytest.mark.slow
 def test_a_damaged_reproduction_is_drawn_or_refused(output):
-    fuzz(output, done_or_refused(lambda: main([str(output)])))
+    fuzz(output, done_or_refused(lambda: draw_paper([str(output)])))
 
 
 @pytest.mark.slow
@@ -129,11 +135,15 @@ def test_a_damaged_unfinished_run_is_drawn_or_refused(output, status):
     fuzz(run, done_or_refused(lambda: main([str(run)])))
 
 
+verification = loaded_script("verification/figures.py")
 STUDIES = {
     "study": (write_study, lambda folder, picture: main([str(folder)])),
     "verify": (write_verification, lambda folder, picture: verification.main(folder, picture.parent)),
     "step": (write_interface_step, lambda folder, picture: interface_step.main([str(picture), str(folder)])),
-    "choices": (write_open_choices, lambda folder, picture: open_choices.main([str(picture), str(folder)])),
+    "choices": (
+        write_open_choices,
+        lambda folder, picture: command.run("x", lambda: write_results(picture, folder, open_choices.draw)),
+    ),
 }
 
 
@@ -158,7 +168,7 @@ PAGES = {
 @pytest.mark.parametrize("kind", PAGES)
 def test_a_damaged_folder_is_reported_or_refused(tmp_path, kind):
     folder, page = PAGES[kind](tmp_path / kind), tmp_path / "page.html"
-    fuzz(folder, done_or_refused(lambda: report([str(folder), "-o", str(page)])))
+    fuzz(folder, done_or_refused(lambda: report([str(folder), "-o", str(page)], (*OF_PAPER, *KINDS))))
 
 
 def test_no_change_to_a_file_with_a_checksum_is_accepted(output):

@@ -8,19 +8,21 @@ import json
 import re
 import shutil
 
+import draw as command
 import h5py
 import numpy as np
 import pytest
+from draw import draw_all, main
+from drawing import criteria, events, studies
+from drawing.html import statements_table, write_report
+from drawing.results import read_results
+from drawing.statements import STATEMENTS
 from matplotlib.figure import Figure
-from refusals import artist, change_json, gids, one_error, replace
-from slipfront.figures import __main__ as command
-from slipfront.figures import balance, criteria, events, studies
-from slipfront.figures.__main__ import draw_all, main
+from refusals import artist, change_json, gids, replace
+from refusals import error_of_paper as one_error
+from slipfront.figures.__main__ import main as draw_run
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import drawn_fronts, main_fronts
-from slipfront.figures.report import statements_table, write_report
-from slipfront.figures.results import read_results
-from slipfront.figures.statements import STATEMENTS
 from synthetic import (
     CONTACT_FROM_M,
     CONTACT_TO_M,
@@ -498,7 +500,7 @@ def test_caption_of_the_balance_has_the_imbalance_of_the_worst_row(output, drawn
     rows = energy_rows()
     rows[2][-1] = -0.0101
     write_csv(output / "left" / "energy.csv", ENERGY_HEADER, rows)
-    caption = balance.balance(read_results(output)).caption
+    caption = {d.name: d for d in draw_all(read_results(output))}["energy_balance"].caption
     assert "left-triggered: largest change 101 J/m, imbalance at most 1.0e-02 J/m or 1.0e-04 of it" in caption
 
 
@@ -507,7 +509,7 @@ def test_single_run_has_its_balance(output, capsys, still):
     run = output / "left"
     if still:
         write_csv(run / "energy.csv", ENERGY_HEADER, [[0] * 13, [1e-6] + [0] * 12])
-    assert main([str(run)]) == 0
+    assert draw_run([str(run)]) == 0
     assert {file.name for file in (run / "figures").iterdir()} == {"energy_balance.png", "energy_balance.pdf"}
     assert (run / "figures/energy_balance.pdf").read_bytes()[:5] == b"%PDF-"
     assert str(run / "figures" / "energy_balance.png") in capsys.readouterr().out

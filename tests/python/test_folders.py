@@ -9,12 +9,14 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from refusals import change_json, flip, one_error
+from draw import draw_all
+from drawing import events, setup
+from drawing.html import figure_html, write_report
+from drawing.results import read_results
+from refusals import change_json, error_of_paper, flip, one_error
 from slipfront import read
-from slipfront.figures import balance, events, plate
-from slipfront.figures.__main__ import draw_all, main
-from slipfront.figures.report import figure_html, write_report
-from slipfront.figures.results import read_results
+from slipfront.figures import balance
+from slipfront.figures.__main__ import main
 from slipfront.files import DataError
 from slipfront.read import read_run, verify_checksums
 from synthetic import (
@@ -70,7 +72,7 @@ def test_a_file_that_is_not_as_listed_is_refused(output, capsys, name):
     seal(output)
     for damage, says in ((flip, "does not match checksums"), (lambda file: file.unlink(), "missing")):
         damage(output / name)
-        error = one_error(capsys, output)
+        error = error_of_paper(capsys, output)
         assert f"{output / name}: {says}" in error and "run the case again" in error
         assert not (output / "figures").exists()
     if name == "right/energy.csv":  # of a single run as well
@@ -288,8 +290,8 @@ def test_runs_without_snapshots_are_drawn(output):
         (output / run / "fields.vtkhdf").unlink()
     results = read_results(output)
     assert results.runs["left"].fields is None
-    setup, three = plate.setup(results), events.three_events(results)
-    assert "no snapshots" in setup.caption
+    set_up, three = setup.setup(results), events.three_events(results)
+    assert "no snapshots" in set_up.caption
     missing = [any(a.get_gid() == "no_fields" for a in ax.findobj()) for ax in three.figure.axes[:3]]
     assert missing == [True, True, False]
 

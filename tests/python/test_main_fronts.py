@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from slipfront.figures.criteria import falls
-from slipfront.figures.main_fronts import counted, main_fronts, tail
+from drawing.criteria import falls, tail
+from slipfront.figures.main_fronts import counted, main_fronts
 from slipfront.read import read_run
 from synthetic import FRONTS_HEADER, WAVE_SPEEDS, case_text, make_front, write_csv, write_run
 

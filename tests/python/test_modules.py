@@ -21,8 +21,7 @@ def built() -> dict[str, set[str]]:
 
 
 def folder(module: str) -> Path:
-    """Modules lie in src, but for the paper's."""
-    return ROOT / ("papers" if module == "kammer2012" else "src") / module
+    return ROOT / "src" / module
 
 
 def described() -> list[str]:
@@ -35,9 +34,7 @@ def included(module: str) -> set[str]:
     """Modules of which a module includes headers."""
     seen = set()
     for file in folder(module).rglob("*.[ch]pp"):
-        seen |= set(
-            re.findall(r'^#include "(?:papers/)?(\w+)/', file.read_text(encoding="utf-8"), re.MULTILINE)
-        )
+        seen |= set(re.findall(r'^#include "(\w+)/', file.read_text(encoding="utf-8"), re.MULTILINE))
     return seen - {module}
 
 
@@ -50,7 +47,6 @@ def test_the_page_shows_what_is_built(tmp_path):
 
 def test_modules_include_what_they_are_named_and_nothing_else():
     modules = {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
-    modules |= {path.parent.name for path in (ROOT / "papers").glob("*/*.cpp")}
     assert modules == set(built())
     # base brings errors and assertions: every module may use it.
     assert {module: included(module) | {"base"} for module in modules} == {

@@ -3,19 +3,15 @@
 
 from __future__ import annotations
 
-import shutil
-
 import matplotlib
 import numpy as np
 import pytest
+from drawing import open_choices
 from matplotlib.colors import to_hex
-from refusals import artist, change_json, one_error, one_line
-from slipfront.figures import open_choices
-from slipfront.figures.__main__ import main
+from refusals import artist, change_json
 from slipfront.figures.style import RC
 from slipfront.files import DataError
-from synthetic import write_checksums
-from synthetic_study import write_interface_step, write_open_choices
+from synthetic_study import write_open_choices
 
 
 @pytest.fixture(autouse=True)
@@ -24,29 +20,9 @@ def style_of_figures():
         yield
 
 
-STUDIES = {"open_choices": write_open_choices, "interface_step": write_interface_step}
-
-
 @pytest.fixture
 def study(tmp_path):
     return write_open_choices(tmp_path / "study")
-
-
-@pytest.mark.parametrize("name, write", STUDIES.items())
-def test_the_command_draws_a_study_into_its_folder(tmp_path, capsys, name, write):
-    folder = write(tmp_path / "study")
-    write_checksums(folder)
-    assert main([str(folder)]) == 0
-    assert sorted(f.name for f in (folder / "figures").iterdir()) == [f"{name}.pdf", f"{name}.png"]
-    assert f"figure: {folder / 'figures' / name}.png" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("name", ["open_choices.csv", "open_choices.json"])
-def test_a_damaged_study_is_refused(study, capsys, name):
-    write_checksums(study)
-    (study / name).write_text("changed")
-    assert f"{study / name}: does not match checksums.sha256" in one_error(capsys, study)
-    assert not (study / "figures").exists()
 
 
 def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample(study):
@@ -104,16 +80,3 @@ def test_a_chosen_sample_that_the_table_lacks_is_refused(study):
     change_json(study / "open_choices.json", lambda s: s["chosen"]["values"].update(left_added=11.0))
     with pytest.raises(DataError, match="open_choices.csv: has no row of the chosen sample"):
         open_choices.draw(study)
-
-
-@pytest.mark.parametrize("kind", ["png", "pdf", "svg"])
-def test_the_picture_is_written_where_it_is_wanted(study, tmp_path, capsys, kind):
-    picture = tmp_path / f"a/picture.{kind}"
-    assert open_choices.main([str(picture), str(study)]) == 0
-    first = picture.read_bytes()
-    # A regular file is replaced, by the same bytes.
-    assert open_choices.main([str(picture), str(study)]) == 0
-    assert picture.read_bytes() == first and len(first) > 1000
-    shutil.rmtree(study)
-    assert open_choices.main([str(picture), str(study)]) == 2
-    assert "No such file" in one_line(capsys)

@@ -7,21 +7,23 @@ from __future__ import annotations
 import errno
 import os
 import resource
+import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 import slipfront.command
-from common import WITH_PACKAGE, call
+from common import ROOT, WITH_PACKAGE, call, refusal
 from common import one_line as line_of
+from drawing.results import read_experiment
 from refusals import one_error, one_line
-from slipfront.figures import interface_step, verification
+from slipfront.figures import interface_step
 from slipfront.figures.__main__ import main
 from slipfront.files import DataError, read_json, read_table, read_toml
-from slipfront.read import read_experiment, read_fronts, read_history
-from synthetic import ENERGY_HEADER, energy_rows, write_csv, write_run
-from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
+from slipfront.read import read_fronts, read_history
+from synthetic import ENERGY_HEADER, energy_rows, write_checksums, write_csv, write_run
+from synthetic_study import write_interface_step, write_study, write_verification
 
 NOBODY = 65534
 
@@ -189,32 +191,55 @@ def test_a_folder_of_any_name_is_drawn(run):
 # Output
 
 
-def test_pictures_of_verify_are_written_or_refused(tmp_path, capsys):
-    assert verification.main(tmp_path, tmp_path / "figures") == 2
-    one_line(capsys)
+def test_pictures_of_verify_are_written_or_refused(tmp_path):
+    def draw(results, figures):
+        return call(sys.executable, ROOT / "verification/figures.py", results, figures, env=WITH_PACKAGE)
+
+    refusal(draw(tmp_path, tmp_path / "figures"))
     assert not (tmp_path / "figures").exists()
-    folder = write_verification(tmp_path / "verify")
-    assert verification.main(folder, tmp_path / "a/b") == 0
+    assert draw(write_verification(tmp_path / "verify"), tmp_path / "a/b").returncode == 0
     assert [f.name for f in (tmp_path / "a/b").iterdir()] == ["column.png"]
 
 
-PICTURES = {
-    "slipfront.figures.interface_step": write_interface_step,
-    "slipfront.figures.open_choices": write_open_choices,
-}
+@pytest.fixture
+def study(tmp_path):
+    return write_interface_step(tmp_path / "study")
 
 
-def draws(module, picture, folder) -> int:
+def draws(picture, folder) -> int:
     """The exit code of a module that draws a study into a picture."""
-    return sys.modules[module].main([str(picture), str(folder)])
+    return interface_step.main([str(picture), str(folder)])
 
 
-@pytest.mark.parametrize("module", PICTURES)
-def test_a_path_that_names_no_picture_is_refused(tmp_path, capsys, module):
-    folder = PICTURES[module](tmp_path / "study")
+def test_a_study_is_drawn_into_its_folder(study, capsys):
+    write_checksums(study)
+    assert main([str(study)]) == 0
+    names = ["interface_step.pdf", "interface_step.png"]
+    assert sorted(f.name for f in (study / "figures").iterdir()) == names
+    assert f"figure: {study / 'figures/interface_step'}.png" in capsys.readouterr().out
+    shutil.rmtree(study / "figures")
+    (study / "interface_step.csv").write_text("changed")
+    assert "interface_step.csv: does not match checksums.sha256" in one_error(capsys, study)
+    assert not (study / "figures").exists()
+
+
+@pytest.mark.parametrize("kind", ["png", "pdf", "svg"])
+def test_the_picture_is_written_where_it_is_wanted(study, tmp_path, capsys, kind):
+    picture = tmp_path / f"a/picture.{kind}"
+    assert draws(picture, study) == 0
+    first = picture.read_bytes()
+    # A regular file is replaced, by the same bytes.
+    assert draws(picture, study) == 0
+    assert picture.read_bytes() == first and len(first) > 1000
+    shutil.rmtree(study)
+    assert draws(picture, study) == 2
+    assert "No such file" in one_line(capsys)
+
+
+def test_a_path_that_names_no_picture_is_refused(study, tmp_path, capsys):
     for name in ("picture", "picture.txt", "picture.jpg", ".png"):
         (tmp_path / name).write_text("mine")
-        assert draws(module, tmp_path / name, folder) == 2
+        assert draws(tmp_path / name, study) == 2
         error = capsys.readouterr().err
         assert f"{tmp_path / name}: the picture's name must end with .png, .pdf, .svg" in error
         assert (tmp_path / name).read_text() == "mine"
@@ -229,13 +254,12 @@ def link_to_a_device(path):
     path.symlink_to("/dev/full")
 
 
-@pytest.mark.parametrize("module", PICTURES)
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, link_to_a_file, link_to_a_device])
-def test_what_is_no_regular_file_is_not_replaced(tmp_path, capsys, module, make):
+def test_what_is_no_regular_file_is_not_replaced(study, tmp_path, capsys, make):
     picture = tmp_path / "picture.png"
     make(picture)
     kind = os.lstat(picture).st_mode
-    assert draws(module, picture, PICTURES[module](tmp_path / "study")) == 2
+    assert draws(picture, study) == 2
     assert f"{picture}: is there and not a regular file" in one_line(capsys)
     assert os.lstat(picture).st_mode == kind
 
@@ -278,7 +302,7 @@ def test_closed_streams_do_not_matter(run):
     assert command(run, stdout=None, stderr=None, preexec_fn=close).returncode == 0
 
 
-@pytest.mark.parametrize("module", ["slipfront.figures", "slipfront.figures.verification", *PICTURES])
+@pytest.mark.parametrize("module", ["slipfront.figures", "slipfront.figures.interface_step"])
 def test_without_arguments_the_usage_is_told(module):
     done = command(module=module)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr

@@ -11,11 +11,11 @@ import sys
 import numpy as np
 import pytest
 from common import ROOT, WITH_PACKAGE, built, call, refusal, require_done
+from drawing.results import read_experiment
 from package_cases import write_case
 from refusals import one_line
 from slipfront import fronts_command
 from slipfront.__main__ import main
-from slipfront.read import read_experiment
 
 ONSETS = "# camera 3\nx_m,time_s\n" + "".join(f"{k * 2e-3},{abs(k - 20) * 2e-6}\n" for k in range(51))
 

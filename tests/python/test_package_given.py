@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import re
 
+import any_events
 import numpy as np
 import pytest
 import slipfront
@@ -158,14 +159,14 @@ def test_arrays_and_options_of_fronts(given, said):
 )
 def test_histories(history, said):
     assert said in refusal(lambda: slipfront.find_fronts_in_history(history, TRACTIONS))
-    assert said in refusal(lambda: slipfront.outcome(CASE, history, TRACTIONS))
+    assert said in refusal(lambda: any_events.outcome(CASE, history, TRACTIONS))
     assert refusal(lambda: slipfront.find_fronts_in_history(history))
 
 
 @pytest.mark.parametrize("given", [5, "x", {}, {"t_s_Pa": np.ones(3)}, [], "friction.mu_k=1", [1]])
 def test_tractions_and_changes_are_dictionaries(given):
     assert "tractions" in refusal(lambda: slipfront.find_fronts_in_history(HISTORY, given))
-    assert "tractions" in refusal(lambda: slipfront.outcome(CASE, HISTORY, given))
+    assert "tractions" in refusal(lambda: any_events.outcome(CASE, HISTORY, given))
     if not isinstance(given, dict):
         assert "it must be a dictionary" in refusal(lambda: slipfront.run(CASE, given))
 
@@ -174,7 +175,7 @@ def test_tractions_and_changes_are_dictionaries(given):
 def test_tractions_have_the_places_of_the_history(places):
     given = TRACTIONS | {"x_m": places}
     assert "tractions['x_m'] differs" in refusal(lambda: slipfront.find_fronts_in_history(HISTORY, given))
-    assert "tractions['x_m'] differs" in refusal(lambda: slipfront.outcome(CASE, HISTORY, given))
+    assert "tractions['x_m'] differs" in refusal(lambda: any_events.outcome(CASE, HISTORY, given))
 
 
 def test_criteria_need_their_columns():
@@ -204,10 +205,10 @@ def test_options_of_the_fit(options):
 
 def test_events_are_outcomes():
     for given in (5, None, "x", [5], [None]):
-        assert "outcome" in refusal(lambda given=given: slipfront.collapse(given)).lower()
+        assert "outcome" in refusal(lambda given=given: any_events.collapse(given)).lower()
     four = dict.fromkeys(("spontaneous", "left", "right", "spontaneous_mu_k_1"), "left.toml")
-    said = refusal(lambda: slipfront.scorecard(**four))
-    assert said == "spontaneous is 'left.toml'; it must be a slipfront.Outcome"
+    said = refusal(lambda: any_events.scorecard(**four))
+    assert said == "spontaneous is 'left.toml'; it must be a slipfront.Event"
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import any_events
 import numpy as np
 import pytest
 import slipfront
@@ -142,21 +143,21 @@ def test_claims_of_four_events():
         "spontaneous_mu_k_1": {"event.kind": "spontaneous", "friction.mu_k": 1.0},
     }.items():
         event = slipfront.run(CASE, changes)
-        outcomes[name] = slipfront.outcome(event.case, event.history, event.tractions, name=name)
+        outcomes[name] = any_events.outcome(event.case, event.history, event.tractions, name=name)
         assert outcomes[name].peak_x_m == pytest.approx(event.info["statics"]["peak_x_m"])
-    claims = slipfront.scorecard(**outcomes)
+    claims = any_events.scorecard(**outcomes)
     by_id = {claim.id: claim for claim in claims}
     assert by_id["C1"].holds is not None
     assert by_id["C1"].how
     untested = [claim.id for claim in claims if claim.holds is None]
     assert "E1" in untested
-    with_points = slipfront.scorecard(
+    with_points = any_events.scorecard(
         **outcomes, experiment={"static_ratio": np.linspace(0.2, 1.3, 23), "v_over_c_L": np.ones(23)}
     )
     assert next(claim for claim in with_points if claim.id == "E1").holds is not None
-    collapse = slipfront.collapse(outcomes.values())
+    collapse = any_events.collapse(outcomes.values())
     assert collapse.n_points > 0
-    assert collapse.energy_rise.fronts.n_bins >= 0
+    assert collapse.fronts["energy_rise"].n_bins >= 0
 
 
 def test_wave_speeds_are_those_of_a_run(run):

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import os
 import resource
 import subprocess
 import sys
@@ -12,11 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from common import ROOT, call, one_line, refusal
+from common import ROOT, WITH_PACKAGE, call, one_line, refusal
 from synthetic import write_checksums
 from synthetic_study import write_open_choices
 
 SCRIPTS = ROOT / "scripts"
+PAPER = "papers/kammer2012"
 OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
 TEXTS = 5 * ("stale", "kept")  # within and behind a pair of marks
 
@@ -28,18 +28,19 @@ class Pages:
     script: str
     results: Path
     file: str  # of the results
-    target: Path  # the argument: a page or a folder of pages
+    target: list[str | Path]  # arguments that name a page or a folder of pages
     page: Path
     marks: list[str]
 
     def run(self, **options) -> subprocess.CompletedProcess:
-        return call(sys.executable, SCRIPTS / self.script, self.results, self.target, **options)
+        with_package = {"env": WITH_PACKAGE} | options
+        return call(sys.executable, ROOT / self.script, self.results, *self.target, **with_package)
 
     def refused(self, *says: str, code: int = 2, **options) -> None:
         before = self.page.read_bytes()
         done = self.run(**options)
         line = one_line(done, code)
-        assert not done.stdout and line.startswith(f"{self.script}: error: ")
+        assert not done.stdout and line.startswith(f"{Path(self.script).name}: error: ")
         for part in says:
             assert part in line
         assert self.page.read_bytes() == before
@@ -50,7 +51,8 @@ def open_choices(folder: Path) -> Pages:
     results, page = write_open_choices(folder / "results"), folder / "page.md"
     tables = ("choices", "outcomes", "evidence", "known", "meshes")
     marks = [mark for table in tables for mark in (f"<!-- {table} -->", f"<!-- end of {table} -->")]
-    return Pages("open-choices-page.py", results, "open_choices.json", page, page, marks)
+    script = f"{PAPER}/open_choices_page.py"
+    return Pages(script, results, "open_choices.json", ["--page", page], page, marks)
 
 
 def claim(name: str, holds: bool | None, **more) -> dict:
@@ -63,7 +65,8 @@ def scorecard(folder: Path, claims: list[dict] | None = None) -> Pages:
     results.mkdir()
     (results / "scorecard.json").write_text(json.dumps(claims or [claim("C1", True)]))
     marks = ["<!-- table -->", "<!-- end of table -->"]
-    return Pages("scorecard-page.py", results, "scorecard.json", page, page, marks)
+    script = f"{PAPER}/scorecard_page.py"
+    return Pages(script, results, "scorecard.json", ["--page", page], page, marks)
 
 
 def verification(folder: Path) -> Pages:
@@ -74,9 +77,8 @@ def verification(folder: Path) -> Pages:
     summary = {"name": "column", "title": "Column", "checks": [check | {"holds": True}]}
     (results / "column.json").write_text(json.dumps(summary))
     (pages / "README.md").write_text(OLD + "<!-- numbers -->\nstale\n")
-    return Pages(
-        "verification-pages.py", results, "column.json", pages, pages / "column.md", ["<!-- numbers -->"]
-    )
+    marks = ["<!-- numbers -->"]
+    return Pages("verification/pages.py", results, "column.json", [pages], pages / "column.md", marks)
 
 
 @pytest.fixture(params=[open_choices, scorecard, verification])
@@ -176,7 +178,7 @@ def test_all_pages_of_the_problems_are_renewed(tmp_path):
     pages.page.write_text("<!-- numbers -->")
     assert pages.run().returncode == 0
     assert "| error | 1 | 0 | 2 | y |" in pages.page.read_text()
-    assert (pages.target / "README.md").read_text().endswith("| [Column](column.md) | 1 of 1 |\n")
+    assert (pages.page.parent / "README.md").read_text().endswith("| [Column](column.md) | 1 of 1 |\n")
 
 
 @pytest.mark.slow
@@ -213,15 +215,19 @@ def test_a_full_disk_leaves_the_page_as_it_was(pages):
         "File too large",
         code=1,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
-        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+        env={**WITH_PACKAGE, "PYTHONDONTWRITEBYTECODE": "1"},
     )
 
 
 @pytest.mark.parametrize(
-    "script", ["energy-criterion.py", "open-choices-page.py", "scorecard-page.py", "verification-pages.py"]
+    "script",
+    [
+        *(f"{PAPER}/{name}.py" for name in ("energy_criterion", "open_choices_page", "scorecard_page")),
+        "verification/pages.py",
+    ],
 )
 def test_without_arguments_the_usage_is_told(script):
-    done = call(sys.executable, SCRIPTS / script)
+    done = call(sys.executable, ROOT / script, env=WITH_PACKAGE)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
 
 

@@ -15,6 +15,7 @@ import pytest
 import slipfront
 from package_cases import write_case
 from refusals import change_json, flip, one_line
+from report import KINDS
 from report_pages import data_of, page_of
 from slipfront import __main__ as package
 from slipfront.read import PROBE_FIELDS, Fields, read_balance
@@ -23,6 +24,7 @@ from slipfront.report.command import main
 from slipfront.report.numbers import listed, packed, unit
 from slipfront.report.page import MARK, POLICY
 from slipfront.report.run import thin_run
+from slipfront.report.study import STUDIES
 from synthetic import write_checksums, write_output, write_run
 from synthetic_study import write_interface_step, write_open_choices, write_study
 
@@ -354,7 +356,7 @@ def test_wrong_shapes_are_refused(run, capsys):
 
 def test_the_page_of_a_reproduction(tmp_path):
     write_output(tmp_path / "out", columns=20, rows=10, n_times=8, snapshots=2)
-    text = page_of(tmp_path / "out")
+    text = page_of(tmp_path / "out", kinds=KINDS)
     data = data_of(text)
     names = ["left-triggered", "spontaneous", "right-triggered", "spontaneous, μ_k = 1.0"]
     assert [run["name"] for run in data["runs"]] == names
@@ -373,7 +375,7 @@ def test_the_page_of_a_reproduction(tmp_path):
 )
 def test_the_pages_of_studies(tmp_path, write, says, n_tables):
     folder = write(tmp_path / "study")
-    text = page_of(folder)
+    text = page_of(folder, kinds=(*STUDIES, *KINDS))
     assert says in text and text.count("<img ") == 1 and text.count("<table") == n_tables
     assert "<script" not in text
 

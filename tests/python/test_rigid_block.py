@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 import sys
 
 import pytest
-from common import ROOT
+from common import ROOT, loaded_script
 
 pytest.importorskip("scipy")
 
@@ -15,12 +14,7 @@ pytest.importorskip("scipy")
 @pytest.fixture(scope="module")
 def script():
     sys.path.insert(0, str(ROOT / "scripts"))
-    spec = importlib.util.spec_from_file_location("rigid_block", ROOT / "scripts/rigid-block.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules[spec.name]
+    yield loaded_script("scripts/rigid-block.py")
     sys.path.remove(str(ROOT / "scripts"))
 
 

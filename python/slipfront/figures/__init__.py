@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The paper's figures and a report, drawn from an output folder of `slipfront reproduce`."""
+"""Figures of runs, sequences and studies of a case. For figures of one's own: `style` and `drawing`."""

@@ -12,7 +12,6 @@ from matplotlib.lines import Line2D
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
-from slipfront.figures.results import Results
 from slipfront.read import BLEW_UP, ENERGY_TERMS, Balance, read_balance, read_place
 
 SMALL = 0.02  # a term that never exceeds this share of the largest is drawn below, where it can be seen
@@ -91,6 +90,7 @@ def closing(books: Books) -> str:
 
 
 def draw_balances(every: list[Books]) -> Drawing:
+    """A column for each run."""
     width_mm = max(style.COLUMN_MM, style.PAGE_MM * len(every) / 4)
     figure = style.new_figure(width_mm, 100 if len(every) > 1 else 120)  # alone, its legend takes more rows
     panels = figure.subplots(2, len(every), squeeze=False, sharex="col")
@@ -123,13 +123,6 @@ def draw_balances(every: list[Books]) -> Drawing:
         "sub-cycled layer and the other cells, an error of the time stepping, and the imbalance: change "
         "less all works, "
         f"each computed by itself. {'; '.join(closing(books) for books in every)}.",
-    )
-
-
-def balance(results: Results) -> Drawing:
-    """All events of a reproduction."""
-    return draw_balances(
-        [Books(name, style.EVENT_STYLES[name].label, run.balance) for name, run in results.runs.items()]
     )
 
 

@@ -21,8 +21,7 @@ from PIL import Image
 
 from slipfront import command
 from slipfront.figures import style
-from slipfront.figures.drawing import Drawing, guarded
-from slipfront.figures.picture import KINDS, command_to_draw, write_results
+from slipfront.figures.drawing import ENDINGS, Drawing, command_to_draw, guarded, write_results
 from slipfront.files import DataError
 from slipfront.folder import belongs
 from slipfront.read import Fields, read_fields
@@ -171,10 +170,10 @@ ANIMATIONS = {".gif": as_gif, ".mp4": as_mp4}
 
 def write(picture: Path, folder: Path) -> list[str]:
     kind = picture.suffix.lower()
-    if kind in KINDS:
+    if kind in ENDINGS:
         return write_results(picture, folder, draw)
     if kind not in ANIMATIONS:
-        raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)}, .gif or .mp4")
+        raise DataError(f"{picture}: the picture's name must end with {', '.join(ENDINGS)}, .gif or .mp4")
     command.replaceable(picture)
     if kind == ".mp4":
         encoder()  # what lacks is told before the drawing
@@ -185,16 +184,14 @@ def write(picture: Path, folder: Path) -> list[str]:
     return [f"animation: {picture}"]
 
 
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.figures.fields",
-        "Draws the speed of the particles in a run's snapshots; into a .gif or .mp4 as an animation.",
-        "`slipfront run` with snapshots",
-        write,
-        arguments,
-        kinds=".png, .pdf, .svg, .gif or .mp4",
-    )
+main = command_to_draw(
+    "slipfront.figures.fields",
+    "Draws the speed of the particles in a run's snapshots; into a .gif or .mp4 as an animation.",
+    "`slipfront run` with snapshots",
+    write,
+    kinds=".png, .pdf, .svg, .gif or .mp4",
+)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -10,8 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from slipfront.figures.drawing import Drawing, plain
-from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.figures.drawing import Drawing, command_to_draw, plain, write_results
 from slipfront.figures.style import COLUMN_MM, V_NAME, new_figure
 from slipfront.files import DataError, number, read_json_table, read_table
 from slipfront.folder import result_file
@@ -77,20 +76,22 @@ def draw(folders: list[Path]) -> Drawing:
     return Drawing("interface_step", figure, "")
 
 
+def draw_one(folder: Path) -> Drawing:
+    return draw([folder])
+
+
 def write(picture: Path, folders: list[Path]) -> list[str]:
     return write_results(picture, folders[0], lambda _: draw(folders))
 
 
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.figures.interface_step",
-        "Draws the error of the front speeds against the cost of the step at the interface.",
-        "`slipfront study interface-step`",
-        write,
-        arguments,
-        several=True,
-    )
+main = command_to_draw(
+    "slipfront.figures.interface_step",
+    "Draws the error of the front speeds against the cost of the step at the interface.",
+    "`slipfront study interface-step`",
+    write,
+    several=True,
+)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

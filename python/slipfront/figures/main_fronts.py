@@ -11,7 +11,6 @@ from slipfront.read import Front, Run
 DRAWN_LENGTH_M = 10e-3
 NUCLEATION_M = 5e-3  # the speed diverges where a front nucleates
 SLOW_OVER_C_L = 0.1  # a front is over where its speed stays below this
-TAIL_M = 20e-3  # the last stretch before it does, where the paper sees fronts leave the energy criterion
 
 
 def drawn_fronts(run: Run) -> list[Front]:
@@ -70,14 +69,3 @@ def main_fronts(run: Run) -> list[Front]:
     own = [f for f in run.fronts if not beyond_origin(run, f.x_m[:1])[0] and counted(run, f).any()]
     each_way = [[f for f in own if f.direction == way] for way in (-1, 1)]
     return [max(fronts, key=lambda f: f.length_m) for fronts in each_way if fronts]
-
-
-def tail(run: Run, front: Front) -> np.ndarray:
-    """Whether a main front's nodes count and lie in the last TAIL_M of those that do. [points]
-
-    A front that may still run when the record ends has no such end.
-    """
-    count = counted(run, front)
-    if slow_end(run, front) == len(count) and run.end_of(front) == "record_end":
-        return np.full(len(count), False)
-    return count & (np.abs(front.x_m - front.x_m[count][-1]) <= TAIL_M * (1 + 1e-9))

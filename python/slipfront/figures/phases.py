@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from slipfront.opened_sequence import OpenSequence
+from slipfront.read import even
 
 LEAST_ROWS = 4  # of a phase
 RATE_RANGE_M_PER_S = (1e-12, 1.0)
@@ -24,11 +25,6 @@ class Phases:
     borders: np.ndarray  # levels between rows [rows + 1]
     time_s: np.ndarray  # since normal loading [rows]
     slip_rate_m_per_s: np.ndarray  # magnitude, NaN where contact is open [rows, nodes]
-
-
-def even(n: int, most: int) -> np.ndarray:
-    """At most so many of n, the first and the last among them."""
-    return np.unique(np.round(np.linspace(0, n - 1, min(n, most))).astype(int))
 
 
 def phases(sequence: OpenSequence, most_rows: int, most_nodes: int) -> Phases:

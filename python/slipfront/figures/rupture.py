@@ -6,6 +6,7 @@ usage: python -m slipfront.figures.rupture PICTURE DIR, output folder of `slipfr
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,13 +20,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from slipfront.figures import style
-from slipfront.figures.drawing import Drawing
-from slipfront.figures.picture import command_to_draw, write_results
-from slipfront.figures.space_time import OPEN_COLOUR, cell_edges, draw_front
+from slipfront.figures.drawing import Drawing, command_to_draw, write_results
 from slipfront.read import Run, read_run
 
 DECADES = 3.0  # of slip rate below the highest that are told apart
-WAVES = {"c_L": "-", "c_S": "--", "c_R": ":"}
+WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": "--", "c_R": ":"}
 
 
 def unit(largest: float, name: str) -> tuple[float, str]:
@@ -44,17 +43,17 @@ def draw_slip_rate(ax: Axes, run: Run) -> AxesImage | QuadMesh:
     to_x, x_unit = unit(run.parameter("plate.width_m"), "m")
     to_t, t_unit = unit(float(history.time_s[-1]), "s")
     image = ax.pcolorfast(
-        to_x * cell_edges(history.x_m),
-        to_t * cell_edges(history.time_s),
+        to_x * style.cell_edges(history.x_m),
+        to_t * style.cell_edges(history.time_s),
         # A floor below the range: the logarithm of zero would be drawn as open.
         np.ma.masked_where(history.p_Pa <= 0, np.maximum(rate, 0.1 * lowest)),
-        cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=OPEN_COLOUR),
+        cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=style.OPEN_COLOUR),
         norm=LogNorm(lowest, highest),
         gid="rate",
     )
     for front in run.fronts:
         colour = style.DIRECTION_COLOURS[front.direction]
-        draw_front(ax, to_x * front.x_m, to_t * front.onset_s, colour, f"front:{front.id}")
+        style.draw_front(ax, to_x * front.x_m, to_t * front.onset_s, colour, f"front:{front.id}")
     ax.set(
         xlabel=f"$x$ ({x_unit})",
         ylabel=f"$t$ ({t_unit})",
@@ -71,10 +70,7 @@ def draw_speeds(ax: Axes, run: Run) -> None:
     for front in run.fronts:
         colour = style.DIRECTION_COLOURS[front.direction]
         ax.plot(to_x * front.x_m, front.v_tip_m_per_s / c_S, color=colour, gid=f"speed:{front.id}")
-    for wave, line in WAVES.items():
-        level = run.fact(f"wave_speeds.{wave}_m_per_s") / c_S
-        ax.axhline(level, color="0.45", linewidth=0.5, linestyle=line, zorder=0.5, gid=wave)
-        style.name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
+    style.wave_speed_lines(ax, run, c_S, WAVES)
     highest = 1.3 * run.c_L_m_per_s / c_S
     ax.set(
         xlabel=f"$x$ ({x_unit})",
@@ -93,7 +89,7 @@ def handles_of(run: Run) -> list[Artist]:
     names = {way: f"fronts {words}" for way, words in style.DIRECTION_WORDS.items()}
     fronts = [Line2D([], [], color=colours[way], linewidth=1.2, label=names[way]) for way in colours]
     has_open = bool((run.history.p_Pa <= 0).any())
-    return [*fronts, *([Patch(facecolor=OPEN_COLOUR, label="contact open")] if has_open else [])]
+    return [*fronts, *([Patch(facecolor=style.OPEN_COLOUR, label="contact open")] if has_open else [])]
 
 
 def rupture(run: Run) -> Drawing:
@@ -113,23 +109,18 @@ def rupture(run: Run) -> Drawing:
     return Drawing("rupture", figure, caption)
 
 
-def write(picture: Path, folder: Path) -> list[str]:
-    def draw(results: Path) -> Drawing:
-        run = read_run(results)
-        return rupture(run).marked(run.mark)
-
-    return write_results(picture, folder, draw)
+def draw(folder: Path) -> Drawing:
+    run = read_run(folder)
+    return rupture(run).marked(run.mark)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.figures.rupture",
-        "Draws slip rate and front speeds of a run.",
-        "slipfront run",
-        write,
-        arguments,
-    )
+main = command_to_draw(
+    "slipfront.figures.rupture",
+    "Draws slip rate and front speeds of a run.",
+    "slipfront run",
+    partial(write_results, draw=draw),
+)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

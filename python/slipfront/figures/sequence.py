@@ -8,6 +8,7 @@ sequence.max_events above 1"""
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +19,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from slipfront.figures import style
-from slipfront.figures.drawing import Drawing
-from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
-from slipfront.figures.picture import command_to_draw, write_results
-from slipfront.figures.space_time import OPEN_COLOUR, cell_edges
+from slipfront.figures.drawing import Drawing, command_to_draw, write_results
+from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
-from slipfront.read import read_place
+from slipfront.read import even, read_place
 
 LOCAL, GLOBAL, PREDICTED = "#0072b2", "#d55e00", "#000000"
 MOST_ROWS, MOST_NODES, MOST_LABELS = 1200, 400, 24  # of all phases
@@ -72,10 +71,10 @@ def draw_phases(figure: Figure, ax: Axes, sequence: OpenSequence) -> None:
     """Slip rate over place and phase, with the number of each event and when it begins."""
     of = phases(sequence, MOST_ROWS, MOST_NODES)
     image = ax.pcolormesh(
-        style.mm(cell_edges(of.x_m)),
+        style.mm(style.cell_edges(of.x_m)),
         of.borders,
         np.clip(of.slip_rate_m_per_s, *RATE_RANGE_M_PER_S),
-        cmap=colormaps["YlGnBu"].with_extremes(bad=OPEN_COLOUR),
+        cmap=colormaps["YlGnBu"].with_extremes(bad=style.OPEN_COLOUR),
         norm=LogNorm(*RATE_RANGE_M_PER_S),
         rasterized=True,
         gid="phases",
@@ -121,22 +120,17 @@ def sequence(of: OpenSequence) -> Drawing:
     return Drawing("sequence", figure, caption)
 
 
-def write(picture: Path, folder: Path) -> list[str]:
-    def draw(results: Path) -> Drawing:
-        return sequence(OpenSequence(read_place(results, SEQUENCE)))
-
-    return write_results(picture, folder, draw)
+def draw(folder: Path) -> Drawing:
+    return sequence(OpenSequence(read_place(folder, SEQUENCE)))
 
 
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.figures.sequence",
-        "Draws the force of a sequence of events, their extents and their slip.",
-        "`slipfront run` with sequence.max_events above 1",
-        write,
-        arguments,
-    )
+main = command_to_draw(
+    "slipfront.figures.sequence",
+    "Draws the force of a sequence of events, their extents and their slip.",
+    "`slipfront run` with sequence.max_events above 1",
+    partial(write_results, draw=draw),
+)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

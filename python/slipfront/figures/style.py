@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The look of all figures: sizes of a journal's columns, fonts, and one colour, line and marker per event."""
+"""The look of all figures: sizes of a journal's columns, fonts, axes along the interface, wave speeds.
+
+For figures of one's own: `matplotlib.rc_context(RC)` while they are drawn, and the functions below."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import matplotlib.patheffects as path_effects
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from slipfront.read import Front, Run
+from slipfront.read import Run
 
 COLUMN_MM = 84.0
 TEXT_MM = 120.0
@@ -24,7 +23,6 @@ PAGE_MM = 174.0
 Look = dict[str, Any]
 #: A line style: a name, or an offset and the lengths of dashes and gaps.
 Line = Literal["-", "--", ":", "none"] | tuple[float, tuple[float, ...]]
-Colour = tuple[float, float, float]
 
 #: Matplotlib types the keys of its settings one by one.
 RC: dict[Any, Any] = {
@@ -60,57 +58,23 @@ RC: dict[Any, Any] = {
 }
 
 
-@dataclass(frozen=True)
-class FrontStyle:
-    colour: str
-    line: Line
-
-
-@dataclass(frozen=True)
-class EventStyle:
-    """The look of an event and of its main fronts, by their direction."""
-
-    label: str
-    marker: str
-    fronts: dict[int, FrontStyle]
-
-    def front(self, direction: int) -> FrontStyle:
-        """Of the main front in a direction; of a front in another one as of the event's own."""
-        return self.fronts.get(direction, next(iter(self.fronts.values())))
-
-    @property
-    def colour(self) -> str:
-        return next(iter(self.fronts.values())).colour
-
-
-EVENT_STYLES = {
-    "left": EventStyle("left-triggered", "s", {1: FrontStyle("#0072b2", (0, (4.5, 1.8)))}),
-    "spontaneous": EventStyle(
-        "spontaneous", "o", {-1: FrontStyle("#000000", "-"), 1: FrontStyle("#cc79a7", "-")}
-    ),
-    "right": EventStyle("right-triggered", "^", {-1: FrontStyle("#d55e00", (0, (6, 1.5, 1, 1.5)))}),
-    "spontaneous_mu_k_1.0": EventStyle(
-        "spontaneous, $\\mu_k = 1.0$", "o", {-1: FrontStyle("#117733", "-"), 1: FrontStyle("#999933", "-")}
-    ),
-}
-#: Of fronts of any other run, by their direction: readable on white and, outlined, on the slip rate.
+#: Of fronts by their direction: readable on white and, outlined, on the slip rate.
 DIRECTION_COLOURS = {-1: "#d55e00", 1: "#882255"}
 DIRECTION_WORDS = {-1: "to $-x$", 1: "to $+x$"}
-TIP_MARKER = [(0, 0), (-0.5, 1.0), (0.5, 1.0), (0, 0)]  # a triangle that stands on the tip
+OPEN_COLOUR = "0.8"  # of open contact, over place and time
 REFERENCE: Look = {"color": "0.45", "linewidth": 0.5, "zorder": 0.5}  # wave speeds, mu_s
 
 V_NAME = r"$V_\mathrm{tip}$"
 V_LABEL = r"$V_\mathrm{tip} / c_\mathrm{L}$"
-STATIC_LABEL = r"$t_s / p_s$"
-DYNAMIC_LABEL = r"$t_d / p_d$"
-ENERGY_LABEL = r"$(U_r - U_s) / U_s$"
 
 
 def mm(length_m: ArrayLike) -> np.ndarray:
+    """Lengths in mm."""
     return np.asarray(length_m) * 1e3
 
 
 def new_figure(width_mm: float, height_mm: float, constrained: bool = True) -> Figure:
+    """A figure whose axes find their places, or, unconstrained, are placed by hand."""
     return Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained" if constrained else None)
 
 
@@ -121,12 +85,24 @@ def x_axis(ax: Axes, run: Run) -> None:
 
 
 def panel_letter(ax: Axes, letter: str) -> None:
+    """A bold (a) above the left end of a panel."""
     ax.set_title(f"({letter})", loc="left", fontweight="bold", pad=3)
 
 
 def outlined(colour: str, width: float) -> list[path_effects.AbstractPathEffect]:
     """Path effects that keep a thin line or letter readable on any ground."""
     return [path_effects.withStroke(linewidth=width, foreground=colour)]
+
+
+def cell_edges(x: np.ndarray) -> np.ndarray:
+    """Borders of the cells around ascending points, half-way between them."""
+    half = 0.5 * np.diff(x)
+    return np.concatenate([[x[0] - half[0]], x[:-1] + half, [x[-1] + half[-1]]])
+
+
+def draw_front(ax: Axes, x: np.ndarray, time: np.ndarray, colour: str, gid: str) -> None:
+    """The onsets along a front, outlined: its colour is seen on any slip rate."""
+    ax.plot(x, time, color=colour, linewidth=1.0, path_effects=outlined("white", 2.2), gid=gid)
 
 
 def name_level(ax: Axes, level: float, label: str, below: bool = False) -> None:
@@ -144,102 +120,12 @@ def name_level(ax: Axes, level: float, label: str, below: bool = False) -> None:
     )
 
 
-def wave_speed_lines(ax: Axes, run: Run, waves: tuple[str, ...] = ("c_L", "c_S", "c_R")) -> None:
-    """Wave speeds over c_L as thin horizontal lines, named at the right end."""
-    for wave in waves:
-        level = run.fact(f"wave_speeds.{wave}_m_per_s") / run.c_L_m_per_s
-        ax.axhline(level, linestyle=":" if wave == "c_R" else "-", gid=wave, **REFERENCE)
+def wave_speed_lines(ax: Axes, run: Run, unit_m_per_s: float, lines: dict[str, Line]) -> None:
+    """Wave speeds of the plate, by their names, as thin horizontal lines, named at the right end."""
+    for wave, line in lines.items():
+        level = run.fact(f"wave_speeds.{wave}_m_per_s") / unit_m_per_s
+        ax.axhline(level, linestyle=line, gid=wave, **REFERENCE)
         name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
-
-
-def pale(colour: str) -> Colour:
-    """The colour mixed with white."""
-    red, green, blue = (1 - 0.5 * (1 - part) for part in to_rgb(colour))
-    return red, green, blue
-
-
-def front_gid(run: Run, front: Front, part: str = "") -> str:
-    """What a front's line is called: the plain name for the nodes that count, a part for others."""
-    return f"{run.name}:{front.id}" + (f":{part}" if part else "")
-
-
-def fill(event: EventStyle, direction: int) -> str:
-    """Markers are filled for fronts against the imposed shear, open for those along it."""
-    return event.front(direction).colour if direction < 0 else "white"
-
-
-def draw_line(
-    ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, line: Line | None = None
-) -> None:
-    """A main front as a line with a marker every 10 mm of path; broken where it is undefined."""
-    style = EVENT_STYLES[run.name]
-    every = max(1, round(10e-3 / np.median(np.abs(np.diff(front.x_m)))))
-    ax.plot(
-        x,
-        y,
-        color=style.front(front.direction).colour,
-        linestyle=style.front(front.direction).line if line is None else line,
-        marker=style.marker,
-        markevery=(every // 2, every),
-        markerfacecolor=fill(style, front.direction),
-        gid=front_gid(run, front),
-    )
-
-
-def draw_points(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str = "") -> None:
-    """A main front as a marker per node; those of a part in a pale colour."""
-    style = EVENT_STYLES[run.name]
-    own = style.front(front.direction).colour
-    colour = pale(own) if part else own
-    ax.plot(
-        x,
-        y,
-        linestyle="none",
-        marker=style.marker,
-        markersize=2.4,
-        markeredgewidth=0.5,
-        color=colour,
-        markerfacecolor=colour if front.direction < 0 else "white",
-        zorder=1.6 if part else 2.0,
-        gid=front_gid(run, front, part),
-    )
-
-
-def draw_pale(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str) -> None:
-    """What is shown for completeness only: thin, light and behind all else."""
-    look: Look = {"color": pale(EVENT_STYLES[run.name].colour), "linewidth": 0.5, "zorder": 1.2}
-    ax.plot(x, y, gid=front_gid(run, front, part), **look)
-
-
-def event_handles(runs: list[Run]) -> list[Line2D]:
-    """Legend entries of the events' main fronts, with their direction where an event has two."""
-    names = {-1: ", against", 1: ", along"}
-    return [
-        Line2D(
-            [],
-            [],
-            color=look.colour,
-            linestyle=look.line,
-            marker=event.marker,
-            markerfacecolor=fill(event, way),
-            label=event.label + (names[way] if len(event.fronts) > 1 else ""),
-        )
-        for event in (EVENT_STYLES[run.name] for run in runs)
-        for way, look in event.fronts.items()
-    ]
-
-
-def fill_handles() -> list[Line2D]:
-    """Legend entries that tell what filled and open markers mean."""
-    look: Look = {"color": "0.35", "linestyle": "none", "marker": "o"}
-    return [
-        Line2D([], [], markerfacecolor="0.35", label="filled: against the shear", **look),
-        Line2D([], [], markerfacecolor="white", label="open: along the shear", **look),
-    ]
-
-
-def pale_handle(colour: str = "#000000") -> Line2D:
-    return Line2D([], [], color=pale(colour), linewidth=0.5, label="other fronts and nodes")
 
 
 def legend_below(figure: Figure, handles: list[Any], n_columns: int) -> None:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from slipfront.figures.main_fronts import DRAWN_LENGTH_M
-from slipfront.figures.report import formatted, front_row, table
 from slipfront.files import is_number
 from slipfront.folder import UNFINISHED, belongs
 from slipfront.read import STATUSES, Run, entry, median, read_run
@@ -27,6 +26,7 @@ from slipfront.report.run_data import (
     units_of,
 )
 from slipfront.report.sketch import sketch
+from slipfront.report.tables import formatted, front_cells, table
 
 MOST_TIMES, MOST_NODES = 400, 320  # of a page with one run
 ENDS = {
@@ -274,7 +274,7 @@ def fronts_section(run: Run, fracture: Fracture | None) -> str:
         for front, of in (fracture or {}).items()
     }
     rows = [
-        [*front_row("", f)[1:], speeds.get(f.get("id"), "–"), *energies.get(f.get("id"), [])]
+        [*front_cells(f), speeds.get(f.get("id"), "–"), *energies.get(f.get("id"), [])]
         for f in run.info.get("fronts", [])
     ]
     text = table(header, rows) if rows else "<p>None was found.</p>"

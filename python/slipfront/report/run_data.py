@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from slipfront.figures.balance import TERMS
-from slipfront.figures.criteria import HIGHEST_V, LARGEST_RISE
 from slipfront.figures.main_fronts import away_from_trigger, counted, drawn_fronts, main_fronts, start
 from slipfront.figures.style import DIRECTION_COLOURS
 from slipfront.files import is_number, read_table
 from slipfront.folder import result_file
-from slipfront.read import Balance, Fields, Front, Run, entry, ratio
+from slipfront.read import Balance, Fields, Front, Run, entry, even, ratio
 from slipfront.report.history import ThinHistory
 from slipfront.report.numbers import Unit, listed, packed, packed_bytes, unit
 from slipfront.report.picture_grid import codes, pixel_grid
@@ -23,6 +22,10 @@ from slipfront.report.setup import is_uniform
 from slipfront.units import quantity
 
 WAVES = ("c_L", "c_S", "c_R")
+HIGHEST_V = (
+    3.0  # over c_L: the axis ends there at the latest, as the speed diverges where fronts nucleate or meet
+)
+LARGEST_RISE = 5.0  # of the energy as well, where the stored energy vanishes
 MOST_FRAMES = 40
 STRIPED = (
     "damping_work",
@@ -219,11 +222,6 @@ def energy_data(balance: Balance, units: Units) -> dict[str, Any]:
     }
 
 
-def evenly(n: int, most: int) -> list[int]:
-    """At most so many of n, the first and the last among them."""
-    return sorted({round(k) for k in np.linspace(0, n - 1, min(n, most))})
-
-
 def tips_at(run: Run, time_s: float, units: Units, look: Look) -> list[dict[str, Any]]:
     found = []
     for front in drawn_fronts(run):
@@ -256,7 +254,7 @@ def opening_frame(time_s: np.ndarray, fastest: np.ndarray, largest: float, wante
 def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[str, Any]:
     """Speed of the particles in every snapshot, or in MOST_FRAMES of them."""
     grid = pixel_grid(fields)
-    steps = evenly(len(fields.time_s), MOST_FRAMES)
+    steps = even(len(fields.time_s), MOST_FRAMES).tolist()
     pictures = [grid.means(fields.speed_m_per_s(step)) for step in steps]
     # The scale leaves out the fastest thousandth, of the pixels of the fastest picture.
     fastest = np.array([np.nanquantile(picture, 0.999) for picture in pictures])

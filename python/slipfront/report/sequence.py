@@ -10,18 +10,18 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import to_hex
 
-from slipfront.figures.phases import RATE_RANGE_M_PER_S, even, phases, slip_after_events
-from slipfront.figures.report import formatted, table
+from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence
-from slipfront.read import STATUSES, Place, entry, is_sequence, read_place
+from slipfront.read import STATUSES, Place, entry, even, is_sequence, read_place
 from slipfront.report import setup
 from slipfront.report.numbers import Unit, listed, packed_bytes, unit
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
 from slipfront.report.run import MOST_NODES, MOST_TIMES, navigation, program_words, sessions_words, thin_run
 from slipfront.report.sketch import sketch
 from slipfront.report.study import MOST_ROWS
+from slipfront.report.tables import formatted, table
 from slipfront.units import quantity, unit_of
 
 is_kind = is_sequence  # of the folders of `slipfront report`

@@ -11,13 +11,13 @@ from typing import Any
 
 import matplotlib
 
-from slipfront.figures import bases, convergence, interface_step, open_choices
+from slipfront.figures import convergence, interface_step
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.report import formatted, table
 from slipfront.files import DataError, is_number, read_json_table, read_table
 from slipfront.folder import belongs, result_file
 from slipfront.report.page import Page, section, warnings_list, words
 from slipfront.report.run import navigation
+from slipfront.report.tables import formatted, table
 
 FIGURE_DPI = 180
 MOST_ROWS = 400  # of a table that is shown
@@ -26,13 +26,37 @@ PERCENT = 100
 
 @dataclass(frozen=True)
 class Study:
-    """A kind of study: the file that tells it, its figure, and pieces of HTML that say what came out."""
+    """A kind of folders: the file that tells it, its figure, and pieces of HTML that say what came out."""
 
     summary: str
     points: str  # its table
     title: str
     draw: Callable[[Path], Drawing]
     verdicts: Callable[[dict[str, Any]], str]
+
+    def is_kind(self, folder: Path) -> bool:
+        return belongs(folder / self.summary)
+
+    def page(self, folder: Path, _file: Path) -> Page:
+        file = result_file(folder / self.summary)
+        summary = read_json_table(file)
+        try:
+            verdicts = self.verdicts(summary)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise DataError(f"{file}: not as expected: {error}") from None
+        title, told = str(summary.get("title", "")), summary.get("warnings", [])
+        places = [("verdicts", "What was found"), ("figure", "Figure"), ("table", "Table")]
+        return Page(
+            title=f"{self.title}: {title}" if title else self.title,
+            parts=[
+                f"<p>{words(summary.get('version', ''))}</p>",
+                warnings_list(told if isinstance(told, list) else []),
+                navigation(places),
+                section("verdicts", "What was found", verdicts),
+                section("figure", "Figure", figure(self.draw(folder))),
+                section("table", "Table", whole_table(folder / self.points)),
+            ],
+        )
 
 
 def percent(value: Any) -> str:
@@ -87,57 +111,17 @@ def interface_step_verdicts(summary: dict[str, Any]) -> str:
     )
 
 
-def open_choices_verdicts(summary: dict[str, Any]) -> str:
-    """For each claim, the share of samples for which it holds, and at which levels its verdict turns."""
-    rows = []
-    for row in summary["matrix"]:
-        turns = ", ".join(f"{t['choice']} = {t['level']}" for t in row["turns"])
-        shares = [f"{formatted(row[key], '.0f', PERCENT)}" for key in open_choices.SHARES]
-        rows.append([words(row["id"]), "holds" if row["holds"] else "does not", words(turns or "–"), *shares])
-    return table(["Claim", "Holds", "Turns at", *open_choices.SHARES.values()], rows)
-
-
-def bases_verdicts(summary: dict[str, Any]) -> str:
-    rows = []
-    for base in summary["bases"]:
-        ratio, change = base["speed_ratio"], base["pressure_change"]
-        rows.append(
-            [
-                words(base["name"]),
-                formatted(ratio["median"], ".2f"),
-                percent(base["share_in_paper_band"]),
-                percent(change["against"]),
-                percent(change["along"]),
-                words(base["n_points"]),
-            ]
-        )
-    header = ["Base", "Speed against over along the shear", "Points in the paper's band",
-              "Change of pressure against", "along", "Points"]  # fmt: skip
-    return table(header, rows)
-
-
 STUDIES = (
     Study("convergence.json", "convergence.csv", "Convergence of the front speeds", convergence.convergence,
           convergence_verdicts),
     Study(interface_step.SUMMARY, interface_step.TABLE, "Error and cost of the step at the interface",
-          lambda folder: interface_step.draw([folder]), interface_step_verdicts),
-    Study(open_choices.SUMMARY, open_choices.TABLE, "What the paper leaves open", open_choices.draw,
-          open_choices_verdicts),
-    Study(bases.SUMMARY, bases.POINTS, "The paper's events on deformable bases", bases.draw, bases_verdicts),
+          interface_step.draw_one, interface_step_verdicts),
 )  # fmt: skip
-
-
-def study_of(folder: Path) -> Study | None:
-    return next((study for study in STUDIES if belongs(folder / study.summary)), None)
-
-
-def is_kind(folder: Path) -> bool:
-    return study_of(folder) is not None
 
 
 def figure(drawing: Drawing) -> str:
     with matplotlib.rc_context({"savefig.dpi": FIGURE_DPI}):
-        image = base64.b64encode(drawing.rendered("png", Software=None)).decode()
+        image = base64.b64encode(drawing.rendered("png")).decode()
     alt = words(drawing.name)
     caption = f"<figcaption>{drawing.caption}</figcaption>" if drawing.caption else ""
     return f'<figure class="page"><img alt="{alt}" src="data:image/png;base64,{image}">{caption}</figure>'
@@ -154,27 +138,3 @@ def whole_table(file: Path) -> str:
         else ""
     )
     return more + table([words(name) for name in points.header], rows, kind="dense")
-
-
-def page(folder: Path, _file: Path) -> Page:
-    study = study_of(folder)
-    assert study is not None
-    file = result_file(folder / study.summary)
-    summary = read_json_table(file)
-    try:
-        verdicts = study.verdicts(summary)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise DataError(f"{file}: not as expected: {error}") from None
-    title, told = str(summary.get("title", "")), summary.get("warnings", [])
-    places = [("verdicts", "What was found"), ("figure", "Figure"), ("table", "Table")]
-    return Page(
-        title=f"{study.title}: {title}" if title else study.title,
-        parts=[
-            f"<p>{words(summary.get('version', ''))}</p>",
-            warnings_list(told if isinstance(told, list) else []),
-            navigation(places),
-            section("verdicts", "What was found", verdicts),
-            section("figure", "Figure", figure(study.draw(folder))),
-            section("table", "Table", whole_table(folder / study.points)),
-        ],
-    )

@@ -6,6 +6,7 @@ usage: python -m slipfront.sweep.maps PICTURE DIR, the folder of a sweep"""
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
 from slipfront.figures import style
-from slipfront.figures.drawing import Drawing, plain
-from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.figures.drawing import Drawing, command_to_draw, plain, write_results
 from slipfront.files import DataError
 from slipfront.sweep.outcome import NONE
 from slipfront.sweep.tables import (
@@ -253,15 +253,13 @@ def draw(folder: Path, shown: tuple[str, ...] = SHOWN) -> Drawing:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    return command_to_draw(
-        "slipfront.sweep.maps",
-        "Draws maps of a sweep's results over the first two keys that vary.",
-        "slipfront sweep",
-        lambda picture, folder: write_results(picture, folder, draw),
-        arguments,
-    )
+main = command_to_draw(
+    "slipfront.sweep.maps",
+    "Draws maps of a sweep's results over the first two keys that vary.",
+    "slipfront sweep",
+    partial(write_results, draw=draw),
+)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

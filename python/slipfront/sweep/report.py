@@ -11,9 +11,9 @@ from urllib.parse import quote
 
 import numpy as np
 
-from slipfront.figures.report import table
 from slipfront.files import exists
 from slipfront.report.page import Page, embedded, words
+from slipfront.report.tables import table
 from slipfront.sweep.maps import SHOWN, axis_of, waves_of
 from slipfront.sweep.outcome import QUANTITIES, Quantity
 from slipfront.sweep.tables import (

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The claims of Kammer et al. 2012 tested on events from anywhere: papers/kammer2012/scorecard.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import events
+from events import Collapse, Event, event_of
+from numpy.typing import ArrayLike
+from scorecard import Claim, Reproduction
+from scorecard import scorecard as claims_of
+from slipfront import _core
+from slipfront.given import column, flag, in_order, instance, number, refusing, text
+from slipfront.measures import Arrays, history_arrays, tractions_at
+from slipfront.running import CaseLike, make_case
+
+
+def outcome(
+    case: CaseLike,
+    history: Arrays,
+    tractions: Arrays,
+    *,
+    name: str = "",
+    threshold_m_per_s: float = 1e-3,
+    critical_shear_m: float = float("nan"),
+    **tables: Any,
+) -> Event:
+    """An event as the claims look at it.
+
+    case: material, friction, event.kind with its trigger zone, and how fronts are measured; as for `run`.
+    history: time_s [times], x_m [nodes], slip_rate_m_per_s, t_Pa and p_Pa [times, nodes]. tractions: t_s_Pa
+    and p_s_Pa [nodes] before the event. Contact is where p_s is above 0, its inside loading.edge_margin_m
+    from the ends. Raises CaseError where arrays do not fit each other or the case cannot be used."""
+    threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
+    shear_m = number(critical_shear_m, "critical_shear_m")
+    called, prepared, arrays = text(name, "name"), make_case(case, None, tables), history_arrays(history)
+    t_s, p_s = tractions_at(arrays[1], tractions)
+    with refusing():
+        found = _core.event_of_history(prepared, *arrays, t_s, p_s, threshold, shear_m)
+        return event_of(called, prepared, found)
+
+
+def collapse(outcomes: Iterable[Event], *, without_tails: bool = False) -> Collapse:
+    """How well each criterion orders the speeds of a set of events: spreads at equal criterion, the fit of
+    V_tip/c_L over the energy rise, and the share of points in the paper's band.
+
+    without_tails: without the last 20 mm of fronts that arrest or run out of contact."""
+    given = in_order(outcomes, "outcomes", "a list of events")
+    for event in given:
+        instance(event, Event, "one of outcomes")
+    return events.collapse(given, flag(without_tails, "without_tails"))
+
+
+def scorecard(
+    *,
+    spontaneous: Event,
+    left: Event,
+    right: Event,
+    spontaneous_mu_k_1: Event,
+    experiment: Mapping[str, ArrayLike] | None = None,
+) -> list[Claim]:
+    """Every claim against four events, the last of them with mu_k = 1.0; each row says how it is tested.
+
+    experiment: measured static_ratio and v_over_c_L [points]. Claims about studies over friction are not
+    tested: their `holds` is None."""
+    points = None
+    if experiment is not None:
+        ratio, speed = (column(experiment, "experiment", key) for key in ("static_ratio", "v_over_c_L"))
+        points = ratio, speed
+    four = (spontaneous, left, right, spontaneous_mu_k_1)
+    for name, event in zip(("spontaneous", "left", "right", "spontaneous_mu_k_1"), four, strict=True):
+        instance(event, Event, name)
+    return claims_of(Reproduction(*four, experiment=points))
