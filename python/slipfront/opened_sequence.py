@@ -204,8 +204,8 @@ class OpenSequence:
     @property
     def slow(self) -> Sequence[xr.Dataset]:
         """Under a law with a state the slow slip before each event, as OpenRun.history, with time and slip
-        since normal loading; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind the
-        last event too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
+        since normal loading; slow[0] precedes event 1. Where sequence.end_s ends the loading, the one behind
+        the last event too. find_fronts_in_history finds slow fronts in it. Empty under other laws."""
         folder, n_events = self.folder, self.events.sizes["event"]
         behind_the_last = self.status == "complete" and exists(folder / f"slow/{n_events + 1:04}")
         listed = any(name.startswith("slow/") for name in read_list(folder) or ())

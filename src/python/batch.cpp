@@ -59,18 +59,18 @@ struct BatchEvent {
 };
 
 BatchEvent event_of(const run::Result& result, const run::InitialState& initial) {
-  const auto& common = initial.common;
+  const auto& before = initial.subcritical;
   BatchEvent e{.end = result.event.end,
                .reason = result.event.reason,
                .speeds = result.speeds,
                .fronts = result.fronts,
-               .tractions = common.tractions,
-               .inside_from_m = common.inside_from_m,
-               .inside_to_m = common.inside_to_m,
-               .peak_x_m = common.peak_x_m,
+               .tractions = before.tractions,
+               .inside_from_m = before.inside_from_m,
+               .inside_to_m = before.inside_to_m,
+               .peak_x_m = before.peak_x_m,
                .critical_shear_m = initial.critical_shear_m};
   if (initial.ramp) {
-    e.ramp_critical_shear_m = initial.ramp->spontaneous.shear_m;
+    e.ramp_critical_shear_m = initial.ramp->supercritical.shear_m;
     e.ramp_onsets = initial.ramp->record.n_onsets();
   }
   for (const auto& onset : result.event.record.onsets) {
@@ -90,21 +90,21 @@ BatchEvent event_of(const run::Result& result, const run::InitialState& initial)
 
 /// Where the interface is in contact, inside and at its largest t/p, as the statics would tell.
 void find_contact(const record::StaticState& state, double edge_margin_m, run::InitialState& initial) {
-  auto& common = initial.common;
+  auto& before = initial.subcritical;
   const auto in_contact = [](double p_Pa) { return p_Pa > 0; };
   const auto first = std::ranges::find_if(state.p_s_Pa, in_contact);
   require(first != state.p_s_Pa.end(), "p_s_Pa is nowhere above 0: nothing is in contact");
   const auto last = std::find_if(state.p_s_Pa.rbegin(), state.p_s_Pa.rend(), in_contact);
-  common.inside_from_m = state.x_m[first - state.p_s_Pa.begin()] + edge_margin_m;
-  common.inside_to_m = state.x_m[state.p_s_Pa.rend() - last - 1] - edge_margin_m;
-  common.peak_ratio = -infinity;
+  before.inside_from_m = state.x_m[first - state.p_s_Pa.begin()] + edge_margin_m;
+  before.inside_to_m = state.x_m[state.p_s_Pa.rend() - last - 1] - edge_margin_m;
+  before.peak_ratio = -infinity;
   for (std::size_t k = 0; k < state.x_m.size(); ++k) {
     const double ratio = state.t_s_Pa[k] / state.p_s_Pa[k];
-    if (!common.is_inside(state.x_m[k]) || !(state.p_s_Pa[k] > 0) || !(ratio > common.peak_ratio)) continue;
-    common.peak_ratio = ratio;
-    common.peak_x_m = state.x_m[k];
+    if (!before.is_inside(state.x_m[k]) || !(state.p_s_Pa[k] > 0) || !(ratio > before.peak_ratio)) continue;
+    before.peak_ratio = ratio;
+    before.peak_x_m = state.x_m[k];
   }
-  require(std::isfinite(common.peak_ratio), "t_s_Pa/p_s_Pa is defined nowhere inside the interface");
+  require(std::isfinite(before.peak_ratio), "t_s_Pa/p_s_Pa is defined nowhere inside the interface");
 }
 
 /// An event from a user's arrays instead of a run.
@@ -115,14 +115,14 @@ BatchEvent event_of_history(const input::CaseFile& given, const Values& time_s, 
   const auto& config = given.config();
   const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
   run::InitialState initial;
-  initial.common.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
+  initial.subcritical.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
   initial.critical_shear_m = critical_shear_m;
-  find_contact(initial.common.tractions, config.loading.edge_margin_m, initial);
+  find_contact(initial.subcritical.tractions, config.loading.edge_margin_m, initial);
   run::Result result;
   result.speeds = run::wave_speeds(config.material);
   const auto options = run::front_options(config, initial);
   result.event.record = to_record(history, threshold_m_per_s, options.l_star_m);
-  result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
+  result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
   return event_of(result, initial);
 }
 
