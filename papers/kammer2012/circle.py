@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from events import Event, Wave, main_front, median
+from events import Event, Wave, event_of, main_front, median
 
 # The wave is looked for at multiples of this time while the front's tip is between these places.
 INTERVAL_S = 5e-6
@@ -60,14 +60,15 @@ def waves_on_rays(
     return waves
 
 
-def waves_of(found: Any, edge_margin_m: float, zone_m: float) -> list[Wave]:
-    """Of what a batch found for an event triggered at the left edge."""
-    speeds = [(s.time_s, np.hypot(s.x_m_per_s, s.y_m_per_s)) for s in found.snapshots]
-    if not speeds:
-        return []
-    begin_m = found.inside_from_m - edge_margin_m
-    element_m = found.x_m[1] - found.x_m[0]
-    return waves_on_rays(speeds, found.node_x_m, found.node_y_m, element_m, (begin_m, begin_m + zone_m))
+def event_with_waves(name: str, case: Any, found: Any) -> Event:
+    """Of what a batch found for a case; an event triggered at the left edge with its waves."""
+    event = event_of(name, case, found)
+    if event.kind == "left" and found.snapshots:
+        speeds = [(s.time_s, np.hypot(s.x_m_per_s, s.y_m_per_s)) for s in found.snapshots]
+        zone_m = event.contact_m[0], event.contact_m[0] + event.zone_m
+        element_m = event.x_m[1] - event.x_m[0]
+        event.waves.extend(waves_on_rays(speeds, found.node_x_m, found.node_y_m, element_m, zone_m))
+    return event
 
 
 def is_apart(wave: Wave, c_L: float) -> bool:

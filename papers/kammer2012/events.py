@@ -155,7 +155,7 @@ class Event:
         return front.part(self.counts(front, leave_out_m) & front.has_speed)
 
 
-def event_of(name: str, case: Any, found: Any, waves: Sequence[Wave] = ()) -> Event:
+def event_of(name: str, case: Any, found: Any) -> Event:
     """Of what a batch found for a case."""
     keys = tomllib.loads(case.toml)
     inside = found.inside_from_m, found.inside_to_m
@@ -189,7 +189,6 @@ def event_of(name: str, case: Any, found: Any, waves: Sequence[Wave] = ()) -> Ev
         ramp_critical_shear_m=found.ramp_critical_shear_m,
         ramp_onsets=found.ramp_onsets,
         trigger_work_J_per_m=found.trigger_work_J_per_m,
-        waves=list(waves),
     )
 
 

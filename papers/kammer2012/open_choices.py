@@ -23,9 +23,9 @@ from typing import Any
 
 import slipfront
 from analysis import cell, estimate, number, write_json
-from circle import Circle, circle_of, wave_times_s, waves_of
+from circle import Circle, circle_of, event_with_waves, wave_times_s
 from commands import Progress, parser_of, run_command
-from events import PAPER_A, PAPER_B, PAPER_C, event_of, median
+from events import PAPER_A, PAPER_B, PAPER_C, median
 from scipy.stats import qmc
 from scorecard import WANTED_IN_BAND, Claim, Reproduction, StudyEvents, TriggerSample, scorecard
 from slipfront.files import DataError, read_json_table
@@ -484,10 +484,7 @@ class Events:
         progress = Progress(len(self.cases) - first)
 
         def done(k: int, found: slipfront.BatchEvent) -> None:
-            event = event_of("", self.cases[first + k], found)
-            if event.kind == "left":
-                margin_m = event.inside_m[0] - event.contact_m[0]
-                event.waves.extend(waves_of(found, margin_m, event.zone_m))
+            event = event_with_waves("", self.cases[first + k], found)
             self.events[first + k] = replace(event, fronts=[]) if found.blew_up else event
             progress.step()
 

@@ -20,7 +20,7 @@ import slipfront
 from analysis import write_analysis, write_json, write_scorecard
 from commands import Progress, parser_of, run_command
 from drawing.results import read_experiment
-from events import Event, event_of
+from events import Event
 from scorecard import (
     Claim,
     LoadedOn,
@@ -47,16 +47,6 @@ from cases import (
 )
 
 
-def measured(run: Run, case: Any, found: slipfront.BatchEvent) -> Event:
-    """An event as the claims look at it, the left-triggered one with its wave."""
-    event = event_of(run.event, case, found)
-    if event.kind != "left":
-        return event
-    margin_m = event.inside_m[0] - event.contact_m[0]
-    event.waves.extend(circle.waves_of(found, margin_m, event.zone_m))
-    return event
-
-
 class Runner:
     """Runs cases and writes each to its folder."""
 
@@ -71,7 +61,7 @@ class Runner:
         def done(k: int, found: slipfront.BatchEvent) -> None:
             if found.blew_up:
                 self.blow_ups.append(f"{runs[k].name}: {found.reason}")
-            events[k] = measured(runs[k], cases[k], found)
+            events[k] = circle.event_with_waves(runs[k].event, cases[k], found)
             self.progress.step()
 
         self.batch.run(cases, done, names=[run.name for run in runs])

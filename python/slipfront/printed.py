@@ -4,6 +4,7 @@ import this module is enough."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -71,15 +72,31 @@ def front(value: _core.Front) -> str:
     return f"<front {value.id} to {way}: {path}, {len(x)} points, {value.mode}, ends: {value.end}>"
 
 
+def batch_event(value: _core.BatchEvent) -> str:
+    end = f", {value.reason}" if value.blew_up else ""
+    return f"<event: {len(value.fronts)} fronts, {len(value.onset_s)} onsets{end}>"
+
+
+def velocities(value: _core.Velocities) -> str:
+    return f"<velocities at t = {value.time_s:.6g} s: {len(value.x_m_per_s)} nodes>"
+
+
+def case(value: _core.Case) -> str:
+    return f"<case '{tomllib.loads(value.toml)['title']}'>"
+
+
 def interface_state(value: _core.InterfaceState) -> str:
     return f"<interface at step {value.step}, t = {value.time_s:.6g} s: {len(value.x_m)} nodes>"
 
 
 PRINTED: dict[type, Callable[[Any], str]] = {
     **dict.fromkeys(LISTED, listing),
+    _core.BatchEvent: batch_event,
+    _core.Case: case,
     _core.Estimate: estimate,
     _core.Front: front,
     _core.InterfaceState: interface_state,
+    _core.Velocities: velocities,
 }
 for kind, shown in PRINTED.items():
     kind.__repr__ = shown  # type: ignore[method-assign, assignment]

@@ -29,8 +29,7 @@ struct PythonCommand {
 };
 
 constexpr std::array python_commands = {
-    PythonCommand{nullptr, "report",
-                  "Write a page (HTML) to look at a run or a study in a browser"},
+    PythonCommand{nullptr, "report", "Write a page (HTML) to look at a run or a study in a browser"},
     PythonCommand{nullptr, "fronts", "Find fronts in a history of slip along an interface, from any source"},
     PythonCommand{nullptr, "gauges",
                   "Fit the field of a front's tip to strain gauges, or compare them with a run"},
