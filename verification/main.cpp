@@ -102,7 +102,7 @@ Outcome outcome_of(const Verification& problem, Effort effort, const results::Re
 int solve(const Arguments& arguments) {
   const auto some = chosen(arguments.names);
   if (arguments.list) {
-    for (const auto& v : some) cli::print("{:<22}{}\n", v.name, v.title);
+    for (const auto& v : some) cli::print("{:<26}{}\n", v.name, v.title);
     return 0;
   }
   std::optional<results::ResultFolder> folder;
