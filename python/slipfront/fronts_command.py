@@ -22,6 +22,7 @@ COLUMNS = ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s")
 SPEEDS = ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s")  # of the whole front
 TRACTIONS = ("t_s_Pa", "p_s_Pa")
 OPTIONS = (*LENGTHS_AND_TIMES, "never_slipped", "place_error_m", "time_error_s")  # by their names in Python
+SLOW = 1e-3  # of a wave speed: ruptures run at 0.01 and more of it; fronts below it creep
 MARK = "# fronts by slipfront fronts\n"  # by it a file is known that may be replaced
 MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 
@@ -42,7 +43,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--l-star-m", type=float, help="length for v_tip; by default the median spacing")
     add("--arrest-time-s", type=float, help="longest wait of a tip; by default 5 times what a front takes "
         "for its least length or the largest gap")  # fmt: skip
-    add("--min-length-m", type=float, help="of a front; by default 2 median spacings")
+    add("--min-length-m", type=float, help="of a front; by default 2 median spacings, of two "
+        "places their distance")  # fmt: skip
     add("--speed-interval", choices=("centred", "approach"), default="centred")
     add("--resolution-s", type=float, help="time between two frames; faster is not resolved")
     add("--end-time-s", type=float, help="end of the record, by default the last onset")
@@ -145,7 +147,10 @@ def speed_in_words(speed_and_interval: np.ndarray, of_waves: dict[str, float]) -
     speed, low, high = speed_and_interval
     if not np.isfinite(speed):
         return "speed undefined"
-    shares = ", ".join(f"{speed / of_wave:.2f} {name}" for name, of_wave in of_waves.items())
+    of_each = {name: speed / of_wave for name, of_wave in of_waves.items()}
+    shares = ", ".join(
+        f"{share:.2f} {n}" if share >= 0.1 else f"{share:.2g} {n}" for n, share in of_each.items()
+    )
     share = f" ({shares})" if shares else ""
     above = f" to {high:.4g}" if np.isfinite(high) else " or more"
     interval = f", {low:.4g}{above}" if f"{low:.4g}" != f"{high:.4g}" else ""
@@ -157,21 +162,32 @@ def summary(fronts: xr.Dataset, of_waves: dict[str, float]) -> list[str]:
     x, onset = fronts["x_m"].to_numpy(), fronts["onset_s"].to_numpy()
     speeds = np.array([fronts[name].to_numpy() for name in SPEEDS]).T
     ends = fronts["end"].to_numpy()
+    notes = list(fronts.attrs["notes"])
+    if not ends.size and any(note.startswith("no fronts: ") for note in notes):
+        return [in_words(note) for note in notes]
     lines = [
         f"front {k}: x = {x[part.start]:.4f} to {x[part.stop - 1]:.4f} m, {1e6 * onset[part.start]:.1f} to "
         f"{1e6 * onset[part.stop - 1]:.1f} us, {speed_in_words(speed, of_waves)}, ends: {end}"
         for k, (part, speed, end) in enumerate(zip(slices_of(fronts), speeds, ends, strict=True))
     ]
+    for k, line in enumerate(lines):  # doubts stand behind what they are about
+        of_front = [note for note in notes if note.startswith(f"front {k}: ")]
+        lines[k] = "; ".join([line, *(note.removeprefix(f"front {k}: ") for note in of_front)])
+        notes = [note for note in notes if note not in of_front]
     used = fronts.attrs
     step = used["time_step_s"]
     lines.append(
         ", ".join(f"{name} {used[name]:.4g}" for name in LENGTHS_AND_TIMES)
         + (f"; intervals of speeds: times right to half of {step:.4g} s" if step > 0 else "")
     )
-    notes = list(used["notes"])
     if "c_L" in of_waves and (speeds[:, 0] > of_waves["c_L"]).any():
         notes.append(
             "a speed is above c_L: check the units of x and time; onsets may not be those of one front"
+        )
+    slowest = "c_S" if "c_S" in of_waves else "c_L"
+    if of_waves and (speeds[:, 0] < SLOW * of_waves[slowest]).any():
+        notes.append(
+            f"a speed is below {SLOW:g} {slowest}: check the units of x and time, unless slip creeps"
         )
     return [in_words(line) for line in [*(lines if ends.size else ["no fronts", *lines]), *notes]]
 

@@ -7,6 +7,7 @@ interface."""
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -279,7 +280,8 @@ def read_gauges(file: str | Path) -> list[Gauge]:
     strain_-45, strain_90, strain_45 of the arms of a rosette, or stress_xx_MPa and so on. Units in the names,
     as read_onsets has them; strain has none, or ustrain, or percent. Arms that are not at one place have
     x_-45_mm, y_-45_mm and so on. Without the column gauge there is one. Empty cells, nan, NA and - are
-    values that are missing: this time of the gauge is left out.
+    values that are missing: this time of the gauge is left out. A gauge without any value is passed over,
+    and a UserWarning says so.
 
     Raises Error where the file is no such record."""
     file = path(file, "file")
@@ -300,9 +302,12 @@ def read_gauges(file: str | Path) -> list[Gauge]:
         rows_of_file.texts(column) if column else ["gauge"] * len(rows_of_file.rows), dtype=np.str_
     )
     require(len(labels) > 0, file, "no rows")
-    made = []
+    made: list[Gauge] = []
     for label in dict.fromkeys(labels.tolist()):
         rows = labels == label
+        if all(np.isnan(v[rows]).all() for v in of_all.values()):
+            warnings.warn(f"{one_line(label)}: passed over: it has no values", stacklevel=2)
+            continue
         at = {q: v[rows] for q, v in read.items() if q in ("x_m", "y_m") or q[:2] in ("x ", "y ")}
         if any(np.ptp(v) > 0 for v in at.values()):
             raise DataError(f"{file}: gauge '{one_line(label)}' is at more than one place")
@@ -327,6 +332,7 @@ def read_gauges(file: str | Path) -> list[Gauge]:
             made.append(gauge.changed(flat_s) if arms else gauge)
         except CaseError as error:
             raise DataError(f"{file}: {error}") from None
+    require(bool(made), file, "no gauge has values")
     return made
 
 

@@ -7,6 +7,7 @@ import argparse
 import csv
 import io
 import re
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -204,24 +205,25 @@ def with_error(value: float, error: float) -> str:
     return f"{value:.4g} +- {error:.2g}" if error == error else f"{value:.4g}"
 
 
-def too_fast(fit: TipFit, run: OpenRun) -> TipFit:
-    """The fit, with a word of the run's fronts that pass its gauge too fast for the field."""
+def with_fronts_of_run(fit: TipFit, run: OpenRun) -> TipFit:
+    """The fit, with the run's fronts at its gauge: those too fast for the field; without a tip all."""
     limit, fronts = limiting_speed_m_per_s(bodies_of(run)), run.fronts
     if fronts.sizes.get("point", 0) == 0:
         return fit
     height_m, off_m = abs(fit.y_m), np.abs(fronts["x_m"].to_numpy() - fit.x_m)
     at = fronts.isel(point=(off_m == off_m.min()) & (off_m < height_m))
-    told = [
-        f"front {front} passes at {1e6 * onset_s:.4g} us with {speed:.4g} m/s, above the limiting speed, "
-        f"{limit:.5g} m/s: the fit does not apply"
-        for front, onset_s, speed in zip(
-            *(at[n].to_numpy() for n in ("front_id", "onset_s", "v_tip_m_per_s")), strict=True
-        )
-        if speed > limit and not abs(onset_s - fit.tip_s) > height_m / limit  # NaN without a tip
-    ]
-    if not told:
-        return fit
-    return replace(fit, doubts=told + fit.doubts[0 if fit.has_tip else 1 :])
+    too_fast, others = [], []
+    for front, onset_s, speed in zip(
+        *(at[n].to_numpy() for n in ("front_id", "onset_s", "v_tip_m_per_s")), strict=True
+    ):
+        told = f"front {front} passes at {1e6 * onset_s:.4g} us with {speed:.4g} m/s"
+        if speed > limit and not abs(onset_s - fit.tip_s) > height_m / limit:  # NaN without a tip
+            too_fast.append(f"{told}, above the limiting speed, {limit:.5g} m/s: the fit does not apply")
+        elif not fit.has_tip:
+            others.append(f"by the run {told}" if speed == speed else f"by the run {told.split(' with')[0]}")
+    if too_fast:
+        return replace(fit, doubts=too_fast + fit.doubts[0 if fit.has_tip else 1 :])
+    return replace(fit, doubts=fit.doubts[:1] + others + fit.doubts[1:]) if others else fit
 
 
 def line_of(fit: TipFit) -> str:
@@ -263,8 +265,11 @@ def work(options: argparse.Namespace) -> list[str]:
     run = OpenRun(read_place(options.records)) if is_folder(options.records) else None
     if run is None and options.stress:
         raise DataError("--stress is of a run; a record holds what its columns say: leave it out")
-    read = read_gauges(options.records) if run is None else gauges_of(run, stress=options.stress)
+    with warnings.catch_warnings(record=True) as passed_over:
+        warnings.simplefilter("always")
+        read = read_gauges(options.records) if run is None else gauges_of(run, stress=options.stress)
     gauges, notes = prepared(read, options)
+    notes = [*(str(told.message) for told in passed_over), *notes]
     if options.compare is not None:
         beside = OpenRun(read_place(options.compare))
         found = compare_gauges(gauges, beside, within_s=options.within_s)
@@ -276,7 +281,7 @@ def work(options: argparse.Namespace) -> list[str]:
             step=not options.no_step,
         )  # fmt: skip
         if run is not None:
-            fits = [too_fast(fit, run) for fit in fits]
+            fits = [with_fronts_of_run(fit, run) for fit in fits]
         is_strain = {gauge.name: gauge.is_strain for gauge in gauges}
         lines, rows = [line_of(fit) for fit in fits], [row_of(fit, is_strain[fit.gauge]) for fit in fits]
     if options.output is not None:

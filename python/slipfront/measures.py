@@ -130,7 +130,8 @@ def settings_of_record(x_m: np.ndarray, onset_s: np.ndarray, given: FrontSetting
     with np.errstate(invalid="ignore"):
         delay = np.abs(np.diff(onset_s))
     moves = np.isfinite(delay) & (delay > 0)
-    least = 2 * usual if given.min_length_m is None else given.min_length_m
+    extent = float(np.ptp(x_m)) if spacing.size else 1.0  # of two places their distance
+    least = min(2 * usual, extent) if given.min_length_m is None else given.min_length_m
     slowness = float(np.median(delay[moves] / spacing[moves])) if moves.any() else 1.0
     length = max(least, min(float(spacing.max(initial=usual)), 5 * usual))
     own: dict[str, Any] = {
@@ -199,7 +200,7 @@ def fitted_speed(
         half = float("inf")
     if not slope > 0:
         return NAN, NAN, NAN
-    return 1 / slope, 1 / (slope + half), 1 / (slope - half) if slope > half else float("inf")
+    return 1 / slope, 1 / (slope + half), 1 / (slope - half) if slope > half * (1 + 1e-9) else float("inf")
 
 
 def slices_of(fronts: xr.Dataset) -> list[slice]:
@@ -306,7 +307,8 @@ def find_fronts(
     farther from the others than these are from each other; a UserWarning says so.
     place_error_m, time_error_s: standard errors of x_m and onset_s, by which the line of each front's speed
     weighs them; one alone: the other is exact. Without them the line favours neither.
-    settings: None in it are: l_star_m the median spacing; min_length_m twice that; arrest_time_s 5 times
+    settings: None in it are: l_star_m the median spacing; min_length_m twice that, of two places their
+    distance; arrest_time_s 5 times
     what a front takes, at the median speed between neighbours, for min_length_m or the largest spacing
     (at most 5 median ones) where that is longer.
 
@@ -337,7 +339,9 @@ def find_fronts(
     with refusing():
         options = used.options()
         options.whole_interface = False
-        found = as_dataset(_core.find_fronts(x, onset, t_s, p_s, end, resolution, options))
+        at_once = slips.size > 1 and bool(np.ptp(slips) == 0)
+        fronts = _core.find_fronts(x, onset, t_s, p_s, end, resolution, options)
+        found = as_dataset([] if at_once else fronts)
     if p_s_Pa is None:
         found["p_s_Pa"][:] = np.nan
     step = time_step_s(x, onset) if resolution_s is None else resolution
@@ -345,8 +349,9 @@ def find_fronts(
     found.attrs = {name: getattr(used, name) for name in LENGTHS_AND_TIMES}
     found.attrs |= {
         "time_step_s": step,
-        "notes": [*notes, *notes_of_record(onset, found, used), *doubts_of_speeds(found)],
-    }
+        "notes": [*notes, *([f"no fronts: all {slips.size} onsets are at {slips[0]:.6g} s"] if at_once else
+                            [*notes_of_record(onset, found, used), *doubts_of_speeds(found)])],
+    }  # fmt: skip
     return found
 
 

@@ -10,7 +10,7 @@ from slipfront.units import unit_of
 #: Lowest, highest, and what it follows from: from gels to diamond, from the laboratory to great earthquakes.
 RANGES = {
     "limiting_speed_m_per_s": (0.5, 2e4, "modulus and density"),
-    "strain": (1e-8, 0.02, "strain"),
+    "strain": (1e-6, 0.02, "strain"),  # what gauges with amplifiers of 1 MHz resolve
     "stress_Pa": (10.0, 1e10, "stress"),
     "peak_t_Pa": (10.0, 1e10, "t_Pa"),
     "residual_coefficient": (-1.0, 10.0, "t_Pa and p_Pa"),

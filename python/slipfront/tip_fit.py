@@ -25,6 +25,9 @@ from slipfront.running import CaseLike
 LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
 LARGE_ERROR = 0.5  # of Gamma
 LEAST_SIGNAL = 5  # of K, the tip's speed and time given, over its error: below, none has passed
+#: By so many joint errors, and by this share, the speed from gauge to gauge misses those fitted at both.
+SEVERAL, OTHER_SPEED = 3, 0.1
+LEAST_APART = 2.0  # heights that a front runs between two passages; a cohesive zone is nearer to its tip
 SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
 STARTS = 3  # the best of them are refined
 LEAST_TIMES = 8
@@ -72,10 +75,10 @@ class TipFit:
         return self.direction != 0
 
 
-def no_tip(gauge: Gauge, why: str, doubts: list[str], limit: float, unchanged: str = "") -> TipFit:
+def no_tip(gauge: Gauge, why: str, unchanged: str, doubts: list[str], limit: float) -> TipFit:
     numbers = (np.nan,) * 8
     change = largest_change(gauge, limit)
-    said = f"no tip is found: {change}; {why}" if change else f"no front passes: {unchanged}{why}"
+    said = f"no tip is found, though {change}: {why}" if change else f"no front passes: {unchanged}"
     return TipFit(
         gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0,
         [said, *flat_tops_within(gauge, -np.inf, np.inf), *doubts, *gauge.doubts],
@@ -113,7 +116,7 @@ def largest_change(gauge: Gauge, limit: float) -> str:
         amount = f"{1e6 * size:.3g} ustrain" if gauge.is_strain else f"{1e-6 * size:.3g} MPa"
         told = (
             f"{part} {'rises' if means[j] > means[i] else 'falls'} by {amount}, half of it within "
-            f"{1e6 * takes_s:.3g} us, in which a front runs up to {takes_s * limit / height_m:.2g} heights"
+            f"{1e6 * takes_s:.3g} us"
         )
     return told
 
@@ -372,14 +375,12 @@ def sought(
         ended.append((tip.trial(v, t), tip, v, t, at))
     order = ranked([end[0] for end in ended])
     if not order:
-        return no_tip(
-            gauge,
+        few = (
             f"fewer than {LEAST_TIMES} times are within r_max_m = {r_m[1]:g} m of a tip: give a larger one, "
-            "or check the units of y and time",
-            beyond({"limiting_speed_m_per_s": limit}),
-            limit,
-            "nothing changes, or ",
+            "or check the units of y and time"
         )
+        doubts = beyond({"limiting_speed_m_per_s": limit})
+        return no_tip(gauge, few, f"nothing changes, or {few}", doubts, limit)
     _, tip, v, t, at = ended[order[0]]
     return result(tip, v, t, at, given, limit)
 
@@ -514,9 +515,10 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
     if signal < LEAST_SIGNAL:
         return no_tip(
             gauge,
-            f"the field of a tip is {signal:.1f} errors large, {LEAST_SIGNAL} are needed: where the cohesive "
-            "zone is longer than the gauge is high give r_min_m beyond it, and r_max_m; above "
-            f"{limit:.5g} m/s fronts have another field",
+            f"a tip's field fits by {signal:.1f} errors, {LEAST_SIGNAL} are needed. Perhaps the cohesive "
+            "zone is longer than the gauge is high (give r_min_m beyond the zone, and r_max_m), or the front "
+            f"is faster than {limit:.5g} m/s (its field is another)",
+            "no change stands out of the noise; if you see one, check the units of y and time",
             doubts,
             limit,
         )
@@ -537,7 +539,7 @@ def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, lim
         doubts.append(f"V went to the end of its range, 0 to {limit:.5g} m/s: give speed_m_per_s")
     if not Gamma_error <= LARGE_ERROR * Gamma:
         doubts.append("the record hardly determines Gamma" + ("" if given else ": give speed_m_per_s"))
-    if K < 0:
+    if K < 0 and not gauge.doubts:  # of arms at wrong places, which turn it
         doubts.append("K is negative: the body above slips to -x")
     time_s = tip.time_s[at]
     doubts += flat_tops_within(gauge, time_s[0], time_s[-1])
@@ -573,7 +575,8 @@ def fit_tips(
     passages: int = 1,
     **options: Any,
 ) -> list[TipFit]:
-    """fit_tip of each gauge and each of so many passages of fronts, in the order of time.
+    """fit_tip of each gauge and each of so many passages of fronts, in the order of time. Doubts of it, too:
+    one more passage, and the times of the tip at the gauges beside it, which make another speed.
 
     speed_m_per_s: a number; None: of each fit; "gauges": by the times of the tip at the gauges beside it, in
     the same passage and direction, fitted first. options: of fit_tip. Of one passage, the order of arrivals
@@ -595,10 +598,16 @@ def fit_tips(
             ):
                 known = {**options, "direction": ways[k], "tip_s": found[k][0].tip_s}
                 found[k] = [fit_tip(gauge, case, **known)]
+    told = doubts_of_arrivals(found, case)
     if speed_m_per_s == "gauges":
         speeds = [speeds_between(found, own) for own in found]
         for k, gauge in enumerate(given):
             found[k] = refitted(gauge, case, found[k], options, speeds[k])
+    for k, gauge in enumerate(given):
+        another = doubts_of_another(gauge, case, found[k], options)
+        found[k] = [
+            replace(f, doubts=[*f.doubts, *t, *another]) for f, t in zip(found[k], told[k], strict=True)
+        ]
     return [fit for own in found for fit in own]
 
 
@@ -609,10 +618,47 @@ def passing(gauge: Gauge, case: _core.Case, n: int, options: dict[str, Any]) -> 
     for _ in range(n):
         found.append(fit_tip(rest, case, **options))
         rest = without(rest, case, found[-1])
-    found.sort(key=lambda fit: fit.tip_s if fit.has_tip else np.inf)
-    for _ in range(ROUNDS if n > 1 else 0):
-        found = refitted(gauge, case, found, options, [options["speed_m_per_s"]] * n)
+    return each_without_the_others(gauge, case, found, options)
+
+
+def each_without_the_others(
+    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any]
+) -> list[TipFit]:
+    found = sorted(fits, key=lambda fit: fit.tip_s if fit.has_tip else np.inf)
+    for _ in range(ROUNDS if len(found) > 1 else 0):
+        found = refitted(gauge, case, found, options, [options["speed_m_per_s"]] * len(found))
     return found
+
+
+def doubts_of_another(
+    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any]
+) -> list[str]:
+    """One where what the fits leave of the record is the passage of one more front, apart from theirs."""
+    rest = gauge
+    for fit in fits:
+        rest = without(rest, case, fit)
+    if not largest_change(rest, limiting_speed_m_per_s(case)):
+        return []
+    other = fit_tip(rest, case, **options)
+    height_s = LEAST_APART * abs(gauge.y_m)
+    if not other.has_tip or not all(
+        f.has_tip and abs(other.tip_s - f.tip_s) * f.speed_m_per_s > height_s for f in fits
+    ):
+        return []
+    both = each_without_the_others(gauge, case, [*fits, other], options)
+    if not all(
+        f.has_tip
+        and f.K_Pa_sqrt_m > 0
+        and f.residual_of_all < LARGE_RESIDUAL
+        and f.Gamma_error_J_per_m2 < LARGE_ERROR * f.Gamma_J_per_m2
+        for f in both
+    ):
+        return []
+    times, Gammas = (
+        ", ".join(f"{v:.4g}" for v in of)
+        for of in ([1e6 * f.tip_s for f in both], [f.Gamma_J_per_m2 for f in both])
+    )
+    return [f"fronts at {times} us explain more, with Gamma {Gammas} J/m2: give passages {len(both)}"]
 
 
 def refitted(
@@ -669,18 +715,66 @@ def ways_by_arrivals(fits: list[TipFit]) -> list[int]:
     return ways
 
 
+def of_same_front(every: list[list[TipFit]], own: list[TipFit], k: int) -> list[TipFit]:
+    """The fits of all gauges to the front of one: fronts are the same by their direction and their order."""
+    way = own[k].direction
+    order = sum(f.direction == way for f in own[:k])
+    of_way = [[f for f in fits if f.direction == way] for fits in every]
+    return [fits[order] for fits in of_way if len(fits) > order]
+
+
+def doubts_of_arrivals(every: list[list[TipFit]], case: _core.Case) -> list[list[list[str]]]:
+    """Of each fit of each gauge: where the times of a front's tip at neighbouring gauges make a speed that is
+    not between those fitted there, or that no such tip has."""
+    told: list[list[list[str]]] = [[[] for _ in own] for own in every]
+    limit, c_L = limiting_speed_m_per_s(case), case.wave_speeds.c_L_m_per_s
+    places = {id(f): at for own, of in zip(every, told, strict=True) for f, at in zip(own, of, strict=True)}
+    for own in every:
+        for k, fit in enumerate(own):
+            ahead = [f for f in of_same_front(every, own, k) if fit.has_tip and f.x_m > fit.x_m]
+            for other in ahead:
+                if other.x_m > min(f.x_m for f in ahead):
+                    continue
+                doubt = doubt_of_arrivals(fit, other, limit, c_L)
+                for each in (fit, other) if doubt else ():
+                    places[id(each)].append(doubt)
+    return told
+
+
+def doubt_of_arrivals(fit: TipFit, other: TipFit, limit: float, c_L: float) -> str:
+    """Of two gauges side by side; empty where there is none. Slownesses are compared: their errors are those
+    of times."""
+    apart_m = (other.x_m - fit.x_m) * fit.direction
+    slowness = (other.tip_s - fit.tip_s) / apart_m
+    error = float(np.hypot(fit.tip_error_s, other.tip_error_s)) / abs(apart_m)
+    fast, slow = sorted((fit, other), key=lambda f: -f.speed_m_per_s)
+    near = fast if slowness < 1 / fast.speed_m_per_s else slow
+    own = 1 / near.speed_m_per_s
+    own_error = np.nan_to_num(near.speed_error_m_per_s) * own**2
+    between = 1 / fast.speed_m_per_s <= slowness <= 1 / slow.speed_m_per_s
+    differs = abs(slowness - own) > max(OTHER_SPEED * own, SEVERAL * float(np.hypot(error, own_error)))
+    if (between or not differs) and not slowness + SEVERAL * error < 1 / limit:
+        return ""
+    speed = f"{1 / slowness:.4g} m/s" if slowness > 0 else "a front the other way"
+    above = f", above c_L, {c_L:.4g} m/s," if 0 < slowness < 1 / c_L else ""
+    or_fast = ", or the front is supershear" if 1 / c_L <= slowness < 1 / limit else ""
+    return (
+        f"the tip's times at {fit.gauge} and {other.gauge} make {speed}{above} where the fits have "
+        f"V = {fit.speed_m_per_s:.4g} and {other.speed_m_per_s:.4g} m/s: check their clocks, places and "
+        f"heights y{or_fast}"
+    )
+
+
 def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
     """Of each fit of a gauge: the slope of the tips' times over x, by the parabola through three gauges side
-    by side, or the line through two. Fronts are the same by their direction and their order."""
+    by side, or the line through two."""
     made = []
     for k, fit in enumerate(own):
         way = fit.direction
         if not fit.has_tip:
             made.append(np.nan)
             continue
-        order = sum(f.direction == way for f in own[:k])
-        of_way = [[f for f in fits if f.direction == way] for fits in every]
-        same = [fits[order] for fits in of_way if len(fits) > order]
+        same = of_same_front(every, own, k)
         x, first = np.unique([f.x_m for f in same], return_index=True)
         if len(x) < 2:
             raise CaseError(

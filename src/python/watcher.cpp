@@ -33,7 +33,7 @@ Watcher::~Watcher() {
 run::SessionHooks Watcher::hooks() {
   run::SessionHooks hooks;
   hooks.progress = [this](const char* part, std::int64_t step, std::int64_t total) {
-    if (part != part_) asked_ = {};  // the first of each part is told
+    if (part != part_) asked_ = Clock::time_point();  // the first of each part is told
     part_ = part;
     step_ = step;
     total_ = total;

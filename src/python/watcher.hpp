@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -40,8 +41,8 @@ class Watcher {
   nanobind::object progress_;
   std::string part_;  ///< empty before the first
   std::int64_t step_ = 0, total_ = 0;
-  Clock::time_point asked_ = {};
-  bool stopped_ = false;
+  std::atomic<Clock::time_point> asked_ = {};
+  std::atomic<bool> stopped_ = false;  ///< threads of a batch ask, too
   std::exception_ptr raised_;
 };
 

@@ -160,7 +160,7 @@ def test_intervals_of_few_onsets_are_wide():
     low = 1e3 / (np.sqrt(7 / 3) + 12.706 / np.sqrt(12))
     assert float(three.speed_low_m_per_s[0]) == pytest.approx(low, rel=1e-9)
     assert float(three.speed_high_m_per_s[0]) == np.inf
-    two = interval([0.0, 1e-6])
+    two = interval([0.0, 1e-6])  # of a clock that is exact
     assert (float(two.speed_low_m_per_s[0]), float(two.speed_high_m_per_s[0])) == (0, np.inf)
 
 
@@ -295,3 +295,30 @@ def test_lines_that_say_little_are_in_doubt(onset_s, doubt):
     assert any(note.startswith(doubt) for note in found.notes), found.notes
     even = slipfront.find_fronts(0.01 * np.arange(5), 1e-5 * np.arange(5), settings=settings)
     assert not any(note.startswith("front ") for note in even.notes)
+
+
+def lines_of(tmp_path, capsys, times, *options):
+    file = tmp_path / "onsets.csv"
+    rows = [f"{20 * k},{time}" for k, time in enumerate(times)]
+    file.write_text("\n".join(["x_mm,time_us", *rows]) + "\n")
+    return printed(capsys, file, *options)
+
+
+def test_two_places_make_a_front(tmp_path, capsys):
+    """Its doubt stands in its own line."""
+    front, used = lines_of(tmp_path, capsys, [0, 10])
+    assert ", speed 2000 m/s, 1000 or more, " in front
+    assert front.endswith("; two onsets make its speed, nothing tells whether they are of one front")
+    assert "--min-length-m 0.02" in used
+
+
+def test_onsets_at_one_time_are_told_in_one_line(tmp_path, capsys):
+    assert lines_of(tmp_path, capsys, [7, 7, 7, 7]) == ["no fronts: all 4 onsets are at 7e-06 s"]
+
+
+def test_speeds_far_below_those_of_waves_are_told(tmp_path, capsys):
+    front, *_, note = lines_of(tmp_path, capsys, range(0, 100_000, 10_000), "--c-l-m-per-s", "5000")
+    assert ", speed 2 m/s" in front and "(0.0004 c_L)" in front
+    assert note == "a speed is below 0.001 c_L: check the units of x and time, unless slip creeps"
+    front, _ = lines_of(tmp_path, capsys, range(0, 100, 10), "--c-l-m-per-s", "5000")
+    assert "(0.40 c_L)" in front
