@@ -133,5 +133,5 @@ def test_a_copy_of_the_aging_law_moves_as_it():
             slipfront.run_with_law(case, mu, evolve=wrong)
     with pytest.raises(slipfront.CaseError, match="mu is 0.6 without slip"):
         slipfront.run_with_law(case, lambda rate, psi: 0.6, evolve=evolve)
-    with pytest.raises(slipfront.CaseError, match="which friction.law = coulomb is not"):
+    with pytest.raises(slipfront.CaseError, match="friction.law = coulomb has no state variable"):
         slipfront.run_with_law(CASE, mu, COULOMB, evolve=evolve)
