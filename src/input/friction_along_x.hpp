@@ -32,8 +32,8 @@ double radiation_slip_rate_m_per_s(const Case& config);
 /// radiation, at least 10 V_i.
 /// @pre the law has a state
 double tip_slip_rate_m_per_s(const Case& config);
-/// Slip rate of the fastest node at which an event begins in a sequence of a law with a state, the case's or a
-/// tenth of both of these, and up to which equilibria follow it: half of that.
+/// Slip rate of the fastest node at which an event begins in a sequence of a law with a state, the case's or
+/// a tenth of both of these, and up to which equilibria follow it: half of that.
 double inertia_slip_rate_m_per_s(const Case& config);
 double slow_slip_rate_m_per_s(const Case& config);
 
