@@ -144,7 +144,7 @@ class Event:
 
     def counts(self, front: Front, leave_out_m: float = 0) -> Mask:
         """Whether points count: outside the trigger zone and its margin, and not nearer than leave_out_m to
-        the start of a front that nucleated by itself."""
+        the start of a spontaneously nucleated front."""
         x = front.x_m
         if not len(x):
             return np.zeros(0, dtype=bool)

@@ -10,7 +10,7 @@ import numpy as np
 from events import TAIL_M, Collapse, Event, Front, Mask, collapse, longest
 
 # Fronts that start no farther than this from the first onset start at the nucleation. Points nearer than this
-# to the start of a front that nucleated by itself do not count.
+# to the start of a spontaneously nucleated front do not count.
 NUCLEATION_REACH_M = 5e-3
 SLOW_SHARE = 0.1  # a main front is over where its speed stays below this share of c_L
 

@@ -925,8 +925,8 @@ def lines_of(study: Study, evidence: list[dict[str, Any]]) -> list[str]:
             lines.append(f"  {fit}; {share(chosen.share_in_band)} in the band")
     for e in evidence:
         spreads = (share(e[column][1]) for column in SPREADS)
-        told = "; spread of V_tip {} at equal energy rise, {} at equal t_d/p_d, {} at equal t_s/p_s (medians)"
-        lines.append(f"{e['samples']}: {e['n']} samples{told.format(*spreads) if e['n'] else ''}")
+        text = "; spread of V_tip {} at equal energy rise, {} at equal t_d/p_d, {} at equal t_s/p_s (medians)"
+        lines.append(f"{e['samples']}: {e['n']} samples{text.format(*spreads) if e['n'] else ''}")
     return lines
 
 

@@ -114,7 +114,7 @@ void Coupling::set_loads(Loads loads) {
   loads_ = std::move(loads);
   loads_.trigger_force_N_per_m.resize(interface_.size(), 0.0);
   SLIPFRONT_ASSERT(loads_.strength_fraction.empty() || loads_.strength_fraction.size() == interface_.size(),
-                   "intact of other nodes");
+                   "strength_fraction of other nodes");
   loads_.strength_fraction.resize(interface_.size(), 1.0);
   interface_.strength_fraction = loads_.strength_fraction;
   interface_.is_time_weakening = !loads_.weakens_at_s.empty();
@@ -202,12 +202,15 @@ void Coupling::follow_breakdown(double dt_s, bool changed) {
   breakdown_.follow(
       dt_s, changed, [&](std::size_t i) { return s.slipping[i]; },
       [&](std::size_t i) {
+        interface::NodeFriction now;
+        now.t_Pa = s.t_Pa[i];
+        now.p_Pa = interface::pressure_of_friction_Pa(contact_, s, i);
+        now.strength_Pa = s.strength_Pa[i];
+        now.cohesion_Pa = contact_.law_at(i).cohesion_Pa();
         // As in the work of friction: slip at the mean velocity over the kick.
-        return interface::NodeFriction {
-          s.t_Pa[i], interface::pressure_of_friction_Pa(contact_, s, i), s.strength_Pa[i],
-              contact_.law_at(i).cohesion_Pa(),
-              0.5 * dt_s*(s.v_x_m_per_s[i] + v_x_before_[i]), s.slipping[i] != 0
-        };
+        now.slip_m = 0.5 * dt_s * (s.v_x_m_per_s[i] + v_x_before_[i]);
+        now.slips = s.slipping[i] != 0;
+        return now;
       });
 }
 

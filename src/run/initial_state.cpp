@@ -204,9 +204,8 @@ void require_rate_of_events(const input::Case& config) {
   const Key first("friction.V_i_m_per_s");
   if (const double first_m_per_s = config.friction.parameter("V_i_m_per_s"); first_m_per_s > most_m_per_s)
     throw UserError(
-        "{} is {:.4g} m/s, beyond the rate at which inertia limits slip, {:.4g} m/s: no slow slip comes "
-        "before "
-        "an event; choose a smaller one, or press harder",
+        "{} is {:.4g} m/s, beyond the rate at which inertia limits slip, {:.4g} m/s: no slow slip "
+        "comes before an event; choose a smaller one, or press harder",
         first, first_m_per_s, most_m_per_s);
   if (load_m_per_s >= most_m_per_s)
     throw UserError(
@@ -215,9 +214,8 @@ void require_rate_of_events(const input::Case& config) {
         load_m_per_s, most_m_per_s, speed, Key("sequence.times_s"));
   if (rate_m_per_s > most_m_per_s)
     throw UserError(
-        "{} is {:.4g} m/s, beyond the rate of a front's tip or of radiation, {:.4g} m/s: fronts would be "
-        "slow "
-        "slip, and no event; choose a smaller one",
+        "{} is {:.4g} m/s, beyond the rate of a front's tip or of radiation, {:.4g} m/s: fronts would "
+        "be slow slip, and no event; choose a smaller one",
         key, rate_m_per_s, most_m_per_s);
   if (rate_m_per_s <= load_m_per_s)
     throw UserError(

@@ -25,8 +25,8 @@ struct InitialState {
   std::optional<mesh::Mesh> base;         ///< of the body below, upside down; none on the rigid plane
   std::int64_t n_nodes = 0, n_cells = 0;  ///< of both
   std::vector<double> tributary_m;        ///< [interface nodes]
-  statics::Equilibrium
-      subcritical;  ///< at t/p = (1 - critical_margin) mu_s inside, or under a given shear force
+  /// At t/p = (1 - critical_margin) mu_s inside, or under a given shear force.
+  statics::Equilibrium subcritical;
   statics::Equilibrium supercritical;  ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s;
                                        ///< under a given shear force the subcritical one
   bool prescribed = false;             ///< loading.method is prestress: no statics, no critical shear

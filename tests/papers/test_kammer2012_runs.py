@@ -321,18 +321,23 @@ def test_triggers_are_read_from_the_folder_of_a_study(choices_folder, tmp_path):
         open_choices.read_trigger_sample(copy, True)
 
 
-def test_a_study_goes_on_behind_what_was_done(tmp_path, choices_folder, monkeypatch):
-    folder = tmp_path / "results"
-    step = open_choices.Progress.step
+def interrupt(monkeypatch, command, n_runs, *arguments):
+    """Ends a command as by Ctrl-C when so many runs are done."""
+    step = command.Progress.step
 
     def stop(progress):
         step(progress)
-        if progress.done == 3:
+        if progress.done == n_runs:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(open_choices.Progress, "step", stop)
-    assert run(open_choices, "--quick", "--threads", 1, "-o", folder) == 130
+    monkeypatch.setattr(command.Progress, "step", stop)
+    assert run(command, *arguments) == 130
     monkeypatch.undo()
+
+
+def test_a_study_goes_on_behind_what_was_done(tmp_path, choices_folder, monkeypatch):
+    folder = tmp_path / "results"
+    interrupt(monkeypatch, open_choices, 3, "--quick", "--threads", 1, "-o", folder)
     kept = len(list((folder / "unfinished/state/runs").iterdir()))
     assert kept >= 2
     assert run(open_choices, "--quick", "-o", folder) == 0
@@ -441,16 +446,7 @@ def test_a_reproduction_refuses_a_folder_that_holds_anything(tmp_path, capsys):
 
 def test_a_reproduction_goes_on_behind_what_was_done(tmp_path, quick, choices_folder, monkeypatch):
     folder = tmp_path / "results"
-    step = reproduce.Progress.step
-
-    def stop(progress):
-        step(progress)
-        if progress.done == 9:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(reproduce.Progress, "step", stop)
-    assert run(reproduce, "--quick", "-o", folder) == 130
-    monkeypatch.undo()
+    interrupt(monkeypatch, reproduce, 9, "--quick", "-o", folder)
     assert not (folder / "scorecard.json").exists()
     damaged = folder / "unfinished/studies/mu_k/0.4/left/fronts.csv"
     damaged.write_text("damaged")  # it is computed again
