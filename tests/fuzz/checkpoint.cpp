@@ -115,21 +115,21 @@ std::string checkpoint_of(const input::Case& config) {
 /// Goes on as run::resume does, for some steps.
 void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
   if (kept.head.in_event) {
-    auto initial = run::read_initial_state(kept.rest, config);
+    auto initial = run::read_initial_state(kept.body, config);
     const auto loads = run::loads_of_event(config, initial);
     const auto stepper = run::make_stepper(config, initial);
-    run::read_motion(&kept.rest, *stepper, loads);
+    run::read_motion(&kept.body, *stepper, loads);
     auto event = run::begin_event(config, initial, *stepper, stop);
     results::ResultStream::Extents extents;
-    kept.rest(extents, event);
+    kept.body(extents, event);
     event.require_restored();
-    kept.rest.close();
+    kept.body.close();
     event.run();
   } else {
     run::make_initial_state(config, stop, {}, [&](motion::Stepper& stepper, motion::RampRun& ramp) {
-      run::read_motion(&kept.rest, stepper, {});
-      kept.rest(ramp);
-      kept.rest.close();
+      run::read_motion(&kept.body, stepper, {});
+      kept.body(ramp);
+      kept.body.close();
     });
   }
 }
