@@ -3,10 +3,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
-
-#include "base/numbers.hpp"
 
 namespace slipfront::mesh {
 
@@ -39,18 +36,11 @@ struct Grid {
   std::int64_t n_nodes() const { return std::int64_t{stride()} * (rows + 1); }
 };
 
-/// A boundary node that lets waves out: length of its boundary with the normal along x, and along y; or that
-/// the loading machine holds along one of them.
-struct BoundaryNode {
+/// A node of an edge that lets waves out: length of that edge with the normal along x, and along y.
+struct AbsorbingNode {
   Node node = 0;
   double side_m = 0, top_m = 0;
-  /// Stiffness, per unit thickness, of the spring between the machine and the node: infinite, it moves with
-  /// the machine; 0, it bears a constant force; none, the machine has nothing to do with it.
-  std::optional<double> spring_x_N_per_m = {}, spring_y_N_per_m = {};
 };
-inline bool is_spring(const std::optional<double>& spring_N_per_m) {
-  return spring_N_per_m && *spring_N_per_m != infinity;
-}
 
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
 ///
@@ -65,15 +55,12 @@ struct Mesh {
   std::vector<Cell> cells;
   std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
-  bool is_pushed = false;             ///< at its side; the machine holds the loaded edge along y alone then
-  bool has_machine = false;  ///< under shear `absorbing` says what holds the loaded edge and what is pushed
-  std::vector<Node> pushed_nodes;  ///< those under the pusher, upwards; of columns that do not reach it none
-  /// The loaded edge, where both its displacements are prescribed.
-  std::vector<Node> driven_nodes() const { return has_machine ? std::vector<Node>{} : far_edge_nodes; }
+  std::vector<double> far_edge_shares;         ///< of the edge's length, that belong to each of them
+  std::vector<Node> left_nodes;                ///< of the left side, upwards; none where a part lacks it
+  std::vector<AbsorbingNode> absorbing_nodes;  ///< upwards, left to right
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;
-  std::vector<BoundaryNode> boundary;
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
   /// Whether only the lowest row is held, see make_interface.

@@ -296,8 +296,8 @@ class Maker {
     if (rounded_) move_to_arcs();
     name_interface_nodes();
     name_top();
+    name_left();
     absorb();
-    hold();
     return std::move(mesh_);
   }
 
@@ -408,8 +408,19 @@ class Maker {
   void name_top() {
     if (plate_.top != Top::loaded) return;
     const auto& highest = blocks_.back();
-    for (const int i : highest.held)
-      if (!is_orphan(highest, i)) mesh_.far_edge_nodes.push_back(highest.node(i, highest.grid.rows));
+    const double spacing_m = highest.grid.spacing_m;
+    for (const int i : highest.held) {
+      if (is_orphan(highest, i)) continue;
+      const bool is_end = !is_periodic_ && (i == 0 || i == highest.grid.columns);
+      mesh_.far_edge_nodes.push_back(highest.node(i, highest.grid.rows));
+      mesh_.far_edge_shares.push_back((is_end ? 0.5 * spacing_m : spacing_m) / plate_.width_m);
+    }
+  }
+
+  void name_left() {
+    for (const auto& block : blocks_)
+      for (int j = 0; block.has(0) && j <= block.grid.rows; ++j)
+        mesh_.left_nodes.push_back(block.node(0, j));
   }
 
   /// Every edge between two nodes gives half of its length to each.
@@ -423,7 +434,7 @@ class Maker {
       for (int j = 0; j <= grid.rows; ++j)
         for (const int i : block.held) {
           if (is_orphan(block, i)) continue;
-          BoundaryNode a{block.node(i, j)};
+          AbsorbingNode a{block.node(i, j)};
           const bool at_top = last && j == grid.rows;
           if (sides && (i == 0 || i == grid.columns) && (!loaded || !at_top)) {
             const bool at_end = (first && j == 0) || at_top;
@@ -435,51 +446,11 @@ class Maker {
           }
           if (at_top && top)
             a.top_m = grid.spacing_m * (!is_periodic_ && (i == 0 || i == grid.columns) ? 0.5 : 1);
-          if (a.side_m > 0 || a.top_m > 0) mesh_.boundary.push_back(a);
+          if (a.side_m > 0 || a.top_m > 0) mesh_.absorbing_nodes.push_back(a);
         }
       if (sides && !last && has_inner(grid.columns) && block.has(grid.columns))
-        mesh_.boundary.push_back({block.inner_node(grid.columns), grid.spacing_m, 0});
+        mesh_.absorbing_nodes.push_back({block.inner_node(grid.columns), grid.spacing_m, 0});
     }
-  }
-
-  /// What holds the nodes of the loaded edge and under the pusher, where that is not the same for all.
-  void hold() {
-    const auto& machine = plate_.machine;
-    mesh_.is_pushed = plate_.pusher.is_there();
-    mesh_.has_machine = mesh_.is_pushed || !machine.is_rigid();
-    if (!mesh_.has_machine) return;
-    find_pushed_nodes();
-    const auto& pushed = mesh_.pushed_nodes;
-    for (std::size_t k = 0; k < pushed.size(); ++k) {
-      const auto y_m = [&](std::size_t j) { return mesh_.y_m[pushed[std::min(j, pushed.size() - 1)]]; };
-      const double length_m = y_m(k + 1) - y_m(k == 0 ? 0 : k - 1), all_m = y_m(pushed.size()) - y_m(0);
-      const double share = pushed.size() == 1 ? 1 : 0.5 * length_m / all_m;
-      mesh_.boundary.push_back({.node = pushed[k], .spring_x_N_per_m = share * machine.shear_stiffness_Pa});
-    }
-    const auto& grid = blocks_.back().grid;
-    for (const Node n : mesh_.far_edge_nodes) {
-      const double x_m = mesh_.x_m[n], half_m = 0.5 * grid.spacing_m;
-      const bool is_end = !is_periodic_ && (x_m < half_m || x_m > plate_.width_m - half_m);
-      const double share = (is_end ? half_m : grid.spacing_m) / plate_.width_m;
-      const bool is_corner = !pushed.empty() && pushed.back() == n;
-      auto& node = is_corner ? mesh_.boundary[pushed.size() - 1] : mesh_.boundary.emplace_back();
-      node.node = n;
-      if (!mesh_.is_pushed) node.spring_x_N_per_m = share * machine.shear_stiffness_Pa;
-      node.spring_y_N_per_m = share * machine.normal_stiffness_Pa;
-    }
-  }
-
-  void find_pushed_nodes() {
-    if (!mesh_.is_pushed) return;
-    const double slack_m = 1e-9 * plate_.height_m;
-    for (const auto& block : blocks_)
-      for (int j = 0; j <= block.grid.rows; ++j) {
-        if (!block.has(0)) continue;
-        const Node n = block.node(0, j);
-        if (mesh_.y_m[n] < plate_.pusher.from_m - slack_m || mesh_.y_m[n] > plate_.pusher.to_m + slack_m)
-          continue;
-        mesh_.pushed_nodes.push_back(n);
-      }
   }
 
   const Plate& plate_;

@@ -3,7 +3,6 @@
 
 #include <string_view>
 
-#include "base/numbers.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
 
@@ -30,21 +29,6 @@ enum class Top {
   absorbing,  ///< it moves freely, waves leave through dashpots
 };
 
-/// Holds the left side along x, from one height to another one.
-struct Pusher {
-  double from_m = 0, to_m = 0;
-  bool is_there() const { return to_m > 0; }
-};
-
-/// Stiffnesses of the machine that loads the plate, per unit thickness: in series with what it moves along x,
-/// and with the loaded edge along y once that is pressed down. Every node has its share of them by its
-/// length.
-struct Machine {
-  double shear_stiffness_Pa = infinity;
-  double normal_stiffness_Pa = infinity;  ///< 0: the forces stay
-  bool is_rigid() const { return shear_stiffness_Pa == infinity && normal_stiffness_Pa == infinity; }
-};
-
 /// A rectangle on the rigid plane y = 0 with its lower left corner at the origin.
 struct Plate {
   double width_m = 0.2;
@@ -59,8 +43,6 @@ struct Plate {
   double fillet_radius_m = 5e-3;
   Sides sides = Sides::free;  ///< others only with right-angled corners
   Top top = Top::loaded;
-  Pusher pusher = {};  ///< with it the loaded edge moves freely along x
-  Machine machine = {};
 };
 
 /// Meshes the plate with four-node cells that are squares away from the corners, exact to rounding when the

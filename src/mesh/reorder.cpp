@@ -74,9 +74,9 @@ void renumber(Mesh& mesh, std::span<const Node> number) {
   }
   for (Cell& cell : mesh.cells)
     for (Node& n : cell) n = number[n];
-  for (auto* nodes : {&mesh.interface_nodes, &mesh.far_edge_nodes, &mesh.pushed_nodes})
+  for (auto* nodes : {&mesh.interface_nodes, &mesh.far_edge_nodes, &mesh.left_nodes})
     for (Node& n : *nodes) n = number[n];
-  for (auto& a : mesh.boundary) a.node = number[a.node];
+  for (auto& a : mesh.absorbing_nodes) a.node = number[a.node];
   mesh.grid = {.spacing_m = old.grid.spacing_m};
   mesh.coarser.clear();
 }

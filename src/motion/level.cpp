@@ -261,31 +261,7 @@ StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, 
   return sums;
 }
 
-/// Without what a machine pulls.
-solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, solid::Pair trial,
-                 record::Energies& works) {
-  const bool holds_x = std::isinf(dashpot.d_x), holds_y = std::isinf(dashpot.d_y);
-  const double d_x = holds_x ? 0 : dashpot.d_x, d_y = holds_y ? 0 : dashpot.d_y;
-  const double mean_x = 0.5 * (before.x + trial.x) / (1 + d_x);
-  const double mean_y = 0.5 * (before.y + trial.y) / (1 + d_y);
-  works.boundary_work -= 2 * mass_kg * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
-  if (holds_x) works.far_edge_work += mass_kg * (before.x - trial.x) * before.x;
-  if (holds_y) works.far_edge_work += mass_kg * (before.y - trial.y) * before.y;
-  return {holds_x ? before.x : trial.x - 2 * d_x * mean_x, holds_y ? before.y : trial.y - 2 * d_y * mean_y};
-}
-
 }  // namespace
-
-solid::Pair damp(const Dashpot& dashpot, MachineSprings& springs, double step_s, double mass_kg,
-                 solid::Pair u_m, solid::Pair before, solid::Pair trial, record::Energies& works) {
-  if (dashpot.spring == MachineSprings::none) return damp(dashpot, mass_kg, before, trial, works);
-  const auto force_N = springs.force(dashpot.spring, u_m);
-  const double s_per_kg = step_s / mass_kg;
-  const auto after =
-      damp(dashpot, mass_kg, before, {trial.x + s_per_kg * force_N.x, trial.y + s_per_kg * force_N.y}, works);
-  springs.move(dashpot.spring, step_s, force_N, before, after, works);
-  return after;
-}
 
 void set_motion_before(StepLevel& level, const BodyMotion& body) {
   auto& s = level.shared;

@@ -48,16 +48,6 @@ struct NodeRun {
 };
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body);
 
-/// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
-/// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c. Infinite: the node keeps its
-/// velocity.
-struct Dashpot {
-  std::size_t at = 0;  ///< row of the level, shared node, or interface node
-  mesh::Node node = 0;
-  double d_x = 0, d_y = 0;
-  std::size_t spring = MachineSprings::none;  ///< place among the body's
-};
-
 /// Nodes of a level's cells that belong to finer cells, too, and move with the finer level's steps. Of the
 /// force of the level's own cells on them, what it was in the equilibrium at the start acts as a constant
 /// load in each of these steps; the change since then comes as one kick per step of the level, an impulse.
@@ -147,10 +137,6 @@ struct StepLevels {
   double node_updates_per_step = 0;
 };
 
-/// The dashpot of an absorbing node that moves with steps step_s; at is 0.
-Dashpot make_dashpot(const mesh::BoundaryNode& absorbing, const solid::Material& material, double mass_kg,
-                     double step_s);
-
 /// @throws UserError where the interface rows do not fit into the mesh.
 /// @param table  of the case file that describes the body
 void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::string_view table = "plate");
@@ -192,12 +178,6 @@ using MaxOverSubdomains = std::function<void(std::span<double>)>;
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
                        const TimeStepping& time, double step_s, std::span<const int> multiples,
                        const MaxOverSubdomains& largest = {});
-
-/// Velocity of a dashpot's node at u_m after a kick that alone would lead from `before` to `trial`; the works
-/// of the dashpot and of what springs the node are added to `works`.
-/// @param step_s  with which it moves
-solid::Pair damp(const Dashpot& dashpot, MachineSprings& springs, double step_s, double mass_kg,
-                 solid::Pair u_m, solid::Pair before, solid::Pair trial, record::Energies& works);
 
 /// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
 void set_motion_before(StepLevel& level, const BodyMotion& body);

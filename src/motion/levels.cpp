@@ -148,15 +148,6 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
 
 }  // namespace
 
-Dashpot make_dashpot(const mesh::BoundaryNode& absorbing, const solid::Material& material, double mass_kg,
-                     double step_s) {
-  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
-  const auto& [node, side_m, top_m, spring_x, spring_y] = absorbing;
-  const double factor = 0.5 * step_s * material.density_kg_per_m3 / mass_kg;
-  return {0, node, spring_x == infinity ? infinity : factor * (c_L * side_m + c_S * top_m),
-          spring_y == infinity ? infinity : factor * (c_S * side_m + c_L * top_m)};
-}
-
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body) {
   std::vector<NodeRun> runs;
   for (std::size_t k = 0; k < nodes.size(); ++k) {

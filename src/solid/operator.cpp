@@ -134,17 +134,25 @@ int Operator::widest_row() const {
   return std::ranges::max(rows, {}, &NodeRow::count).count;
 }
 
-Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
+EdgeSets edge_sets(const mesh::Mesh& mesh) {
+  EdgeSets sets{mesh.far_edge_nodes, {}};
+  for (const auto& absorbing : mesh.absorbing_nodes) sets.with_forces.push_back(absorbing.node);
+  return sets;
+}
+
+Operator make_operator(const mesh::Mesh& mesh, const Material& material, const EdgeSets& edges) {
   Operator op;
   op.grid = mesh.grid;
   op.blocks = grids_of(mesh);
   op.rows = rows_of(mesh, op.blocks);
   set_periods(mesh, op);
   op.mass_kg = lumped_mass(mesh, material);
-  op.is_far_edge = mesh::marked(mesh, mesh.driven_nodes());
+  op.is_far_edge = mesh::marked(mesh, edges.held);
+  op.has_forces = mesh::marked(mesh, mesh.interface_nodes);
+  for (const auto n : edges.with_forces) op.has_forces[n] = true;
   if (!op.blocks.empty()) set_stencils(op, material);
   op.whole = make_partial_stiffness(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
-  op.far_edge_rows = assemble_rows(mesh, material, mesh.driven_nodes());
+  op.far_edge_rows = assemble_rows(mesh, material, edges.held);
   return op;
 }
 
@@ -161,7 +169,6 @@ class RowKinds {
         edge_row_(edge_row),
         regular_cell_(mesh.cells.size()),
         is_general_(mesh.n_nodes(), false),
-        is_boundary_(mesh::marked(mesh, mesh.interface_nodes)),
         around_(mesh) {
     const auto block_of = block_of_nodes(mesh, op.blocks);
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -173,7 +180,6 @@ class RowKinds {
         for (const auto n : cell) is_general_[n] = true;
       }
     }
-    for (const auto& absorbing : mesh.boundary) is_boundary_[absorbing.node] = true;
   }
 
   bool is_general(mesh::Node n) const { return is_general_[n] && !op_.is_far_edge[n] && touches_part(n); }
@@ -191,7 +197,7 @@ class RowKinds {
       (cell[0] == n || cell[3] == n ? right : left) += 1;
     }
     if (above == 2 && below == 2) return Squares::all;
-    if (n_cells(n) == 2 && !is_boundary_[n]) {
+    if (n_cells(n) == 2 && !op_.has_forces[n]) {
       if (right == 2) return Squares::right;
       if (left == 2) return Squares::left;
     }
@@ -226,7 +232,7 @@ class RowKinds {
   const Operator& op_;
   const std::vector<bool>& in_part_;
   int edge_row_;
-  std::vector<bool> regular_cell_, is_general_, is_boundary_;
+  std::vector<bool> regular_cell_, is_general_;
   CellsOfNodes around_;
 };
 

@@ -159,15 +159,26 @@ struct Operator {
   EdgeStencil edge{};             ///< over the mass of a node on a straight edge
   PartialStiffness whole;         ///< all cells
   BlockRows far_edge_rows;        ///< K (no mass) of the loaded edge's nodes, N/m
-  std::vector<bool> is_far_edge;  ///< [nodes]
+  std::vector<bool> is_far_edge;  ///< [nodes] those with prescribed displacements
+  std::vector<bool> has_forces;   ///< [nodes] contact, a dashpot or a spring acts on it
 };
 
-Operator make_operator(const mesh::Mesh& mesh, const Material& material);
+/// Nodes of a body's edges whose motion is not that of free nodes.
+struct EdgeSets {
+  std::vector<mesh::Node> held;         ///< both displacements are prescribed
+  std::vector<mesh::Node> with_forces;  ///< of dashpots or springs
+};
+/// The loaded edge held, dashpots at absorbing nodes.
+EdgeSets edge_sets(const mesh::Mesh& mesh);
+
+Operator make_operator(const mesh::Mesh& mesh, const Material& material, const EdgeSets& edges);
+inline Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
+  return make_operator(mesh, material, edge_sets(mesh));
+}
 
 /// What the cells marked contribute. Stencils for nodes that have squares of the part
 /// above or below only are used in row 0 and in `edge_row`, rows of the lowest block; for nodes that have
-/// them to the right or left only, where no other cell and neither contact nor an absorbing boundary touches
-/// them.
+/// them to the right or left only, where no other cell touches them and no forces act.
 PartialStiffness make_partial_stiffness(const mesh::Mesh& mesh, const Material& material, const Operator& op,
                                         const std::vector<bool>& in_part, int edge_row);
 

@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/machine_springs.hpp"
+#include "boundary/machine_springs.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "solid/element.hpp"
 
-namespace slipfront::motion {
+namespace slipfront::boundary {
 
 namespace {
 
 /// The nodes with springs, ascending.
-std::vector<mesh::BoundaryNode> sprung_nodes(const mesh::Mesh& mesh) {
-  std::vector<mesh::BoundaryNode> nodes;
-  for (const auto& a : mesh.boundary)
-    if (mesh::is_spring(a.spring_x_N_per_m) || mesh::is_spring(a.spring_y_N_per_m)) nodes.push_back(a);
-  std::ranges::sort(nodes, {}, &mesh::BoundaryNode::node);
+std::vector<EdgeNode> sprung_nodes(const Boundary& boundary) {
+  std::vector<EdgeNode> nodes;
+  for (const auto& a : boundary.nodes)
+    if (is_spring(a.spring_x_N_per_m) || is_spring(a.spring_y_N_per_m)) nodes.push_back(a);
+  std::ranges::sort(nodes, {}, &EdgeNode::node);
   return nodes;
 }
 
 double stiffness_of(const std::optional<double>& spring_N_per_m) {
-  return mesh::is_spring(spring_N_per_m) ? *spring_N_per_m : 0;
+  return is_spring(spring_N_per_m) ? *spring_N_per_m : 0;
 }
 
 }  // namespace
 
-MachineSprings::MachineSprings(const mesh::Mesh& mesh, const solid::Material& material) {
-  for (const auto& a : sprung_nodes(mesh)) {
+MachineSprings::MachineSprings(const mesh::Mesh& mesh, const solid::Material& material,
+                               const Boundary& boundary) {
+  for (const auto& a : sprung_nodes(boundary)) {
     node_.push_back(a.node);
-    has_spring_.x.push_back(mesh::is_spring(a.spring_x_N_per_m));
-    has_spring_.y.push_back(mesh::is_spring(a.spring_y_N_per_m));
+    has_spring_.x.push_back(is_spring(a.spring_x_N_per_m));
+    has_spring_.y.push_back(is_spring(a.spring_y_N_per_m));
     stiffness_.x.push_back(stiffness_of(a.spring_x_N_per_m));
     stiffness_.y.push_back(stiffness_of(a.spring_y_N_per_m));
   }
@@ -68,8 +69,8 @@ void MachineSprings::reverse() {
 }
 
 double largest_spring_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::Material& material,
-                                          const std::vector<bool>& of_node) {
-  const auto nodes = sprung_nodes(mesh);
+                                          const Boundary& boundary, const std::vector<bool>& of_node) {
+  const auto nodes = sprung_nodes(boundary);
   if (nodes.empty()) return 0;
   const auto mass_kg = solid::lumped_mass(mesh, material);
   double largest = 0;
@@ -81,4 +82,4 @@ double largest_spring_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::M
   return std::sqrt(largest);
 }
 
-}  // namespace slipfront::motion
+}  // namespace slipfront::boundary

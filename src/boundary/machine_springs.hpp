@@ -6,11 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "boundary/boundary.hpp"
 #include "mesh/mesh.hpp"
 #include "record/energies.hpp"
 #include "solid/operator.hpp"
 
-namespace slipfront::motion {
+namespace slipfront::boundary {
 
 /// What a loading machine pulls of a body's boundary by springs: at each node the force force_N - k u. It is
 /// that of the equilibrium at the start, and force_N grows as the machine moves on along x; where k is 0 it
@@ -20,7 +21,7 @@ class MachineSprings {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
   MachineSprings() = default;
-  MachineSprings(const mesh::Mesh& mesh, const solid::Material& material);
+  MachineSprings(const mesh::Mesh& mesh, const solid::Material& material, const Boundary& boundary);
 
   bool empty() const { return node_.empty(); }
   /// none where no spring pulls the node.
@@ -53,6 +54,6 @@ class MachineSprings {
 /// Largest frequency of a spring and its node's mass.
 /// @param of_node  nodes that count; empty: all
 double largest_spring_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::Material& material,
-                                          const std::vector<bool>& of_node = {});
+                                          const Boundary& boundary, const std::vector<bool>& of_node = {});
 
-}  // namespace slipfront::motion
+}  // namespace slipfront::boundary
