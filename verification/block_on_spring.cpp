@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary/machine.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
@@ -82,10 +83,12 @@ Event program(double softness, int rows) {
   auto plate = mesh::Plate{.width_m = 3 * h_m, .height_m = H_m, .element_size_m = h_m};
   plate.corner = mesh::Corner::none;
   plate.sides = mesh::Sides::periodic;
-  plate.machine.shear_stiffness_Pa = k_Pa_per_m * plate.width_m;
+  const boundary::Machine machine{.shear_stiffness_Pa = k_Pa_per_m * plate.width_m};
   const auto mesh = mesh::make_plate(plate);
   const interface::SlipWeakeningHealing law { .mu_s = mu_s, .mu_k = mu_k, .d_c_m = Slider::d_c * unit_m };
-  motion::Stepper stepper(mesh, undamped, {law, {.relaxed = interface::Relaxed::pressure}}, plain_stepping());
+  const motion::BodySource block{mesh, undamped, nullptr, nullptr, machine};
+  motion::Stepper stepper(std::span(&block, 1), {law, {.relaxed = interface::Relaxed::pressure}},
+                          plain_stepping());
   const double strain = mu_s * p_Pa / solid::shear_modulus_Pa(undamped);
   start(stepper, mesh,
         {.u_x_m = [&](mesh::Node n, double) { return mesh.y_m[n] * strain; },

@@ -12,6 +12,7 @@
 
 #include "mesh/node_columns.hpp"
 #include "statics/condensed_interface.hpp"
+#include "statics/elastic_body.hpp"
 #include "verification/body.hpp"
 #include "verification/problems.hpp"
 
@@ -30,8 +31,8 @@ fracture::SlipResponse response(int columns, int rows, mesh::Sides sides, bool r
                                       .element_size_m = h_m,
                                       .corner = mesh::Corner::none,
                                       .sides = sides});
-  const auto body =
-      std::make_shared<const statics::Factorisation>(mesh, undamped, statics::TopConstraint::both);
+  const auto body = std::make_shared<const statics::Factorisation>(statics::ElasticBody{mesh, undamped},
+                                                                   statics::TopConstraint::both);
   const statics::CondensedInterface interface(body, rigid ? nullptr : body);
   std::vector<double> x_m;
   for (const auto n : mesh.interface_nodes) x_m.push_back(mesh.x_m[n]);

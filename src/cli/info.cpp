@@ -78,7 +78,7 @@ void add_steps(const input::Case& config, const run::Info& info, Listing& list) 
                              ? "the end of the loading"
                              : "the first event",
                          info.needs.slow_bytes * 1e-9));
-  const auto& machine = config.plate.machine;
+  const auto& machine = config.machine;
   if (std::isfinite(machine.shear_stiffness_Pa))
     list.add("machine along x", fmt::format("{:g} Pa", machine.shear_stiffness_Pa));
   if (std::isfinite(machine.normal_stiffness_Pa))
@@ -273,7 +273,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_steps(config, info, list);
   add_costs(info, list);
   if (info.shared) add_shared(*info.shared, list);
-  if (info.loads) add_loads(*info.loads, config.plate.pusher.is_there(), input::heals(config), list);
+  if (info.loads) add_loads(*info.loads, config.machine.pusher.is_there(), input::heals(config), list);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",

@@ -90,10 +90,10 @@ std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds
 }
 
 /// Medians over the front's nodes.
-std::string fracture_text(const run::Result& result, const fronts::Front& front) {
+std::string fracture_text(const run::Result& result, std::size_t f) {
   const auto& event = result.event;
-  const auto passages = fracture::passages(front, {event.record.x_m, event.breakdown, event.tip_slip},
-                                           run::bodies_of(result.config));
+  const auto& front = result.fronts[f];
+  const auto& passages = result.passages[f];
   std::vector<double> work, zone_m, G_slip;
   for (std::size_t k = 0; k < passages.size(); ++k) {
     const auto node = static_cast<std::size_t>(front.points[k].node);
@@ -141,12 +141,13 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
       event.steps, result.step_s, std::lround(result.step_s / result.substep_s), result.stepping_wall_s,
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
   print("ended: {}\n", run::end_of_event(result));
-  for (const auto& front : result.fronts) {
+  for (std::size_t f = 0; f < result.fronts.size(); ++f) {
+    const auto& front = result.fronts[f];
     print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, {}, {}, ends: {}\n", front.id,
           front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
           1e6 * front.points.back().onset_s, speed_text(front, result.speeds), fronts::name(front.mode),
           fronts::name(front.end));
-    print("{}", fracture_text(result, front));
+    print("{}", fracture_text(result, f));
   }
   print_rupture(result.rupture);
   for (const auto& warning : result.warnings) print("note: {}\n", warning);

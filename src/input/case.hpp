@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/numbers.hpp"
+#include "boundary/machine.hpp"
 #include "fronts/front.hpp"
 #include "interface/interface.hpp"
 #include "interface/nucleation.hpp"
@@ -129,6 +130,7 @@ struct Case {
   std::string title;
   mesh::Plate plate;
   solid::Material material;
+  boundary::Machine machine;  ///< that loads the plate
   Base base;
   statics::Loading loading;
   Prestress prestress;

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "boundary/machine.hpp"
 
 namespace slipfront::input {
 namespace {
@@ -503,23 +504,24 @@ void add_loading(Entries& all) {
 
 void add_pusher(Entries& all) {
   Table loading(
-      all, "loading", [](auto& config) -> auto& { return config.plate.pusher; }, Stage::statics);
+      all, "loading", [](auto& config) -> auto& { return config.machine.pusher; }, Stage::statics);
   loading.only_with = direct();
-  loading.add("pusher_from_m", &mesh::Pusher::from_m, at_least(0), "with pusher_to_m: the height from which");
+  loading.add("pusher_from_m", &boundary::Pusher::from_m, at_least(0),
+              "with pusher_to_m: the height from which");
   loading.add(
-      "pusher_to_m", &mesh::Pusher::to_m, at_least(0),
+      "pusher_to_m", &boundary::Pusher::to_m, at_least(0),
       "and to which the left side is pushed to +x instead of the top edge, which then moves freely along "
       "x; nodes there do not move along x by themselves, and the pusher stays during an event; 0: none");
 }
 
 void add_machine(Entries& all) {
   Table loading(
-      all, "loading", [](auto& config) -> auto& { return config.plate.machine; }, Stage::statics);
+      all, "loading", [](auto& config) -> auto& { return config.machine; }, Stage::statics);
   loading.only_with = direct();
-  loading.add("shear_stiffness_Pa", &mesh::Machine::shear_stiffness_Pa, above_or_infinite(0),
+  loading.add("shear_stiffness_Pa", &boundary::Machine::shear_stiffness_Pa, above_or_infinite(0),
               "stiffness of the loading machine along x, force per metre of thickness over displacement, in "
               "series with the top edge or the pusher; inf: rigid");
-  loading.add("normal_stiffness_Pa", &mesh::Machine::normal_stiffness_Pa, at_least_or_infinite(0),
+  loading.add("normal_stiffness_Pa", &boundary::Machine::normal_stiffness_Pa, at_least_or_infinite(0),
               "the same downwards, on the top edge once it is tilted; 0: a dead load, inf: the edge stays at "
               "its height");
 }

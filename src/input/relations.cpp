@@ -366,7 +366,7 @@ void check_duration(const Case& config) {
 }  // namespace
 
 void check_pusher(const Case& config) {
-  const auto& [from_m, to_m] = config.plate.pusher;
+  const auto& [from_m, to_m] = config.machine.pusher;
   if (from_m == 0 && to_m == 0) return;
   const Key from("loading.pusher_from_m"), to("loading.pusher_to_m");
   const double h_m = config.plate.element_size_m;
@@ -387,14 +387,13 @@ void check_pusher(const Case& config) {
 }
 
 void check_machine(const Case& config) {
-  const auto& [shear_Pa, normal_Pa] = config.plate.machine;
-  if (config.plate.machine.is_rigid()) return;
+  const auto& [shear_Pa, normal_Pa, pusher] = config.machine;
+  if (config.machine.is_rigid()) return;
   // Beyond this a spring would set the time step: its frequency on a node of the edge that of the elements.
   const double width_m = config.plate.width_m;
   const double h_m = config.plate.element_size_m * std::pow(2, config.plate.coarsenings);
   const double c_L = solid::longitudinal_speed_m_per_s(config.material);
   const double of_elements_Pa = 2 * config.material.density_kg_per_m3 * c_L * c_L / h_m;
-  const auto& pusher = config.plate.pusher;
   const auto require_soft = [&](const char* key, double stiffness_Pa, double length_m) {
     const double most_Pa = of_elements_Pa * length_m;
     if (stiffness_Pa != infinity && stiffness_Pa > most_Pa)

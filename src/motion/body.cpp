@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "boundary/boundary.hpp"
 #include "solid/kernels.hpp"
 
 namespace slipfront::motion {
@@ -18,22 +19,27 @@ int rolling_columns(const solid::Operator& op) {
   return op.blocks.empty() ? 0 : op.widest_row();
 }
 
-BodySteps steps_of(const BodySource& source, double omega, const TimeStepping& time) {
+BodySteps steps_of(const BodySource& source, const boundary::Boundary& boundary, double omega,
+                   const TimeStepping& time) {
   // The eigenvalues of two stiffnesses together are at most the sum of both largest ones.
-  omega = std::hypot(omega, largest_spring_frequency_rad_per_s(source.mesh, source.material));
+  omega =
+      std::hypot(omega, boundary::largest_spring_frequency_rad_per_s(source.mesh, source.material, boundary));
   const double stable_s = solid::stable_step_s(omega, source.material.stiffness_damping_s);
-  return {stable_s, step_multiples(source.mesh, source.material, time, stable_s)};
+  return {stable_s, step_multiples(source.mesh, source.material, boundary, time, stable_s)};
 }
 
 BodyMotion motion_of(const BodySource& source) {
-  BodyMotion motion{solid::make_operator(source.mesh, source.material),
+  auto boundary = boundary::make_boundary(source.mesh, source.machine);
+  boundary::MachineSprings springs(source.mesh, source.material, boundary);
+  BodyMotion motion{solid::make_operator(source.mesh, source.material, boundary.edge_sets()),
                     source.material.stiffness_damping_s,
                     solid::Field(source.mesh.n_nodes()),
                     solid::Field(source.mesh.n_nodes()),
                     {},
                     {},
                     {},
-                    MachineSprings(source.mesh, source.material)};
+                    std::move(boundary),
+                    std::move(springs)};
   if (source.part == nullptr) {
     motion.columns = mesh::NodeColumns(source.mesh);
     return motion;
@@ -53,18 +59,20 @@ BodyMotion motion_of(const BodySource& source) {
 }  // namespace
 
 BodySteps body_steps(const BodySource& body, const TimeStepping& time) {
-  const auto& [mesh, material, part, corners] = body;
-  const double omega = mesh.is_interface() ? solid::frequency_bound_rad_per_s(mesh, material, corners)
-                                           : solid::largest_frequency_rad_per_s(
-                                                 mesh, material, solid::make_operator(mesh, material));
-  return steps_of(body, omega, time);
+  const auto& [mesh, material, part, corners, machine] = body;
+  const auto boundary = boundary::make_boundary(mesh, machine);
+  const double omega = mesh.is_interface()
+                           ? solid::frequency_bound_rad_per_s(mesh, material, corners)
+                           : solid::largest_frequency_rad_per_s(
+                                 mesh, material, solid::make_operator(mesh, material, boundary.edge_sets()));
+  return steps_of(body, boundary, omega, time);
 }
 
 Body::Body(const BodySource& source, const TimeStepping& time)
     : motion_(motion_of(source)),
       steps_(source.part != nullptr
                  ? source.part->steps
-                 : steps_of(source,
+                 : steps_of(source, motion_.boundary,
                             solid::largest_frequency_rad_per_s(source.mesh, source.material, motion_.op),
                             time)),
       finer_w_(rolling_columns(motion_.op)),
@@ -277,7 +285,7 @@ record::Energies Body::energies() {
   return e;
 }
 
-void Body::reverse(const solid::Field& u_m, MachineSprings springs, double time_s) {
+void Body::reverse(const solid::Field& u_m, boundary::MachineSprings springs, double time_s) {
   motion_.u_m = u_m;
   motion_.springs = std::move(springs);
   motion_.springs.reverse();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "boundary/machine_springs.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/interface_side.hpp"
 #include "motion/level.hpp"
@@ -124,9 +125,9 @@ class Body {
   void append_mean_velocity(std::vector<double> solid::Field::*component, mesh::Node first, mesh::Node end,
                             std::vector<double>& to) const;
 
-  const MachineSprings& springs() const { return motion_.springs; }
+  const boundary::MachineSprings& springs() const { return motion_.springs; }
   /// Turns the motion round at the places `u_m`, with the machine's forces there, see Stepper::reverse.
-  void reverse(const solid::Field& u_m, MachineSprings springs, double time_s);
+  void reverse(const solid::Field& u_m, boundary::MachineSprings springs, double time_s);
 
  private:
   template <class F>

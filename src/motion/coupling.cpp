@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "boundary/dashpot.hpp"
 
 namespace slipfront::motion {
 
 namespace {
 
-double dashpot_work(const Dashpot& dashpot, double mass_kg, double mean_x, double mean_y) {
+double dashpot_work(const boundary::Dashpot& dashpot, double mass_kg, double mean_x, double mean_y) {
   return -2 * mass_kg * (dashpot.d_x * mean_x * mean_x + dashpot.d_y * mean_y * mean_y);
 }
 

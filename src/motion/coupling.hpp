@@ -142,7 +142,7 @@ class Coupling {
   interface::Interface interface_;
   interface::BreakdownMonitor breakdown_;
   std::vector<double> tributary_m_;      ///< [nodes]
-  std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [nodes]
+  std::vector<double> contact_mass_kg_;  ///< along y, effective; see boundary::Dashpot. [nodes]
   /// Relative, of the update under way. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;
   std::vector<Side> sides_;                   ///< of two bodies; else none

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "boundary/dashpot.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/landing.hpp"
 #include "motion/level.hpp"
@@ -16,7 +17,7 @@ struct InterfaceSide {
   std::vector<NodeRun> runs;
   solid::Span own;  ///< owned nodes, which enter works; see BodyMotion
   std::vector<double> tributary_m, mass_kg, y_m;
-  std::vector<Dashpot> dashpots;
+  std::vector<boundary::Dashpot> dashpots;
   Landing landing;
 };
 

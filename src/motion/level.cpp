@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary/dashpot.hpp"
+
 namespace slipfront::motion {
 
 namespace {
@@ -203,8 +205,8 @@ void push_boundary(const StepLevel& level, const Band& band, BodyMotion& body, r
     const auto& dashpot = level.dashpots[k];
     const auto n = dashpot.node;
     const solid::Pair trial{v.x[n] - dt * level.a_x[dashpot.at], v.y[n] - dt * level.a_y[dashpot.at]};
-    const auto after = damp(dashpot, body.springs, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, {v.x[n], v.y[n]},
-                            trial, body.is_owned(n) ? works : not_counted);
+    const auto after = boundary::damp(dashpot, body.springs, dt, body.op.mass_kg[n], {u.x[n], u.y[n]},
+                                      {v.x[n], v.y[n]}, trial, body.is_owned(n) ? works : not_counted);
     v.x[n] = after.x;
     v.y[n] = after.y;
     u.x[n] += dt * after.x;
@@ -476,8 +478,9 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
     const double kick_x = dt * s.equilibrium_load_m_per_s2.x[k] + s.impulse_m_per_s.x[k];
     const double kick_y = dt * s.equilibrium_load_m_per_s2.y[k] + s.impulse_m_per_s.y[k];
     const solid::Pair before{s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k]};
-    const auto after = damp(dashpot, body.springs, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, before,
-                            {v.x[n] + kick_x, v.y[n] + kick_y}, body.is_owned(n) ? works : not_counted);
+    const auto after =
+        boundary::damp(dashpot, body.springs, dt, body.op.mass_kg[n], {u.x[n], u.y[n]}, before,
+                       {v.x[n] + kick_x, v.y[n] + kick_y}, body.is_owned(n) ? works : not_counted);
     v.x[n] = after.x - kick_x;
     v.y[n] = after.y - kick_y;
   }

@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "boundary/boundary.hpp"
+#include "boundary/dashpot.hpp"
+#include "boundary/machine_springs.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/damping_work.hpp"
-#include "motion/machine_springs.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
 #include "solid/kernels.hpp"
@@ -31,7 +33,8 @@ struct BodyMotion {
   /// which owns all its nodes.
   std::vector<solid::Span> own;
   std::vector<bool> is_own;
-  MachineSprings springs = {};
+  boundary::Boundary boundary = {};
+  boundary::MachineSprings springs = {};
 
   bool is_owned(int row, solid::Span nodes) const {
     return own.empty() || (nodes.begin >= own[row].begin && nodes.begin < own[row].end);
@@ -54,7 +57,7 @@ std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion
 struct Shared {
   std::vector<mesh::Node> node;  ///< ascending
   std::vector<NodeRun> runs;
-  std::vector<Dashpot> dashpots;
+  std::vector<boundary::Dashpot> dashpots;
   std::vector<std::int32_t> irregular_row;  ///< place in `irregular`; -1: on an edge
   solid::Field u_before_m;                  ///< displacements at the level's last impulse
   solid::Field impulse_m_per_s;             ///< the impulse, until the finer level's next step takes it
@@ -113,12 +116,12 @@ struct StepLevel {
   /// Nodes of the general rows, all of them in the first band, then those with own stencils.
   std::vector<mesh::Node> irregular;
   solid::GeneralRows::Workspace general_space;
-  std::vector<Band> bands;          ///< rows ascending
-  std::vector<Dashpot> dashpots;    ///< as in `irregular`
-  std::vector<bool> takes_impulse;  ///< [irregular] kicked at once: not shared, no dashpot
-  std::vector<bool> moves;          ///< [irregular] moved at once: not shared, not in contact
-  std::vector<double> a_x, a_y;     ///< [irregular]
-  std::vector<mesh::Node> top;      ///< nodes of the loaded edge that move with this level
+  std::vector<Band> bands;                  ///< rows ascending
+  std::vector<boundary::Dashpot> dashpots;  ///< as in `irregular`
+  std::vector<bool> takes_impulse;          ///< [irregular] kicked at once: not shared, no dashpot
+  std::vector<bool> moves;                  ///< [irregular] moved at once: not shared, not in contact
+  std::vector<double> a_x, a_y;             ///< [irregular]
+  std::vector<mesh::Node> top;              ///< nodes of the loaded edge that move with this level
   Shared shared;
   solid::BlockRows top_rows;           ///< K of the level's cells, N/m
   std::vector<mesh::Node> edge_nodes;  ///< of the stencil's edge rows, all in the lowest block
@@ -132,7 +135,7 @@ struct StepLevels {
   std::vector<StepLevel> level;             ///< coarsest first
   std::vector<std::uint8_t> level_of_node;  ///< [nodes]; orphans count to the first
   std::vector<bool> is_orphan;
-  std::vector<Dashpot> contact_dashpots;  ///< of interface nodes
+  std::vector<boundary::Dashpot> contact_dashpots;  ///< of interface nodes
   /// Nodes moved in one step of the coarsest level, sub-steps counted.
   double node_updates_per_step = 0;
 };
@@ -145,7 +148,8 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 /// allow, twice, four times ... as long for squares.
 /// @param stable_step_s  of the whole body
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
-                                const TimeStepping& time, double stable_step_s);
+                                const boundary::Boundary& boundary, const TimeStepping& time,
+                                double stable_step_s);
 
 /// A body's cells divided into levels, coarsest first.
 struct CellLevels {

@@ -5,6 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "boundary/boundary.hpp"
+#include "boundary/dashpot.hpp"
 #include "motion/level.hpp"
 #include "solid/element.hpp"
 
@@ -117,19 +119,18 @@ void set_bands(StepLevel& level, const BodyMotion& body, const std::vector<int>&
   }
 }
 
-/// Gives each absorbing node a dashpot where it moves: with the interface, with a coarser level's shared
-/// nodes, or with its level.
+/// Gives each edge node a dashpot where it moves: with the interface, with a coarser level's shared nodes, or
+/// with its level.
 void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Material& material,
                   const BodyMotion& body) {
-  for (const auto& absorbing : mesh.boundary) {
-    const auto n = absorbing.node;
+  for (const auto& edge : body.boundary.nodes) {
+    const auto n = edge.node;
     const std::size_t l = levels.level_of_node[n];
     auto& level = levels.level[l];
-    auto dashpot = make_dashpot(absorbing, material, body.op.mass_kg[n], level.step_s);
+    auto dashpot = boundary::make_dashpot(edge, material, body.op.mass_kg[n], level.step_s);
     dashpot.spring = body.springs.place(n);
     if (const auto i = place(mesh.interface_nodes, n)) {
-      SLIPFRONT_ASSERT(!absorbing.spring_x_N_per_m && !absorbing.spring_y_N_per_m,
-                       "a machine springs the interface");
+      SLIPFRONT_ASSERT(!edge.spring_x_N_per_m && !edge.spring_y_N_per_m, "a machine springs the interface");
       dashpot.at = *i;
       levels.contact_dashpots.push_back(dashpot);
     } else if (const auto k = l > 0 ? place(levels.level[l - 1].shared.node, n) : std::nullopt) {
@@ -137,13 +138,13 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
       levels.level[l - 1].shared.dashpots.push_back(dashpot);
     } else {
       const auto row = place(level.irregular, n);
-      SLIPFRONT_ASSERT(row, "an absorbing node with a shared stencil");
+      SLIPFRONT_ASSERT(row, "an edge node with a shared stencil");
       dashpot.at = *row;
       level.takes_impulse[*row] = false;
       level.dashpots.push_back(dashpot);
     }
   }
-  for (auto& level : levels.level) std::ranges::sort(level.dashpots, {}, &Dashpot::at);
+  for (auto& level : levels.level) std::ranges::sort(level.dashpots, {}, &boundary::Dashpot::at);
 }
 
 }  // namespace
@@ -173,7 +174,8 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 }
 
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
-                                const TimeStepping& time, double stable_step_s) {
+                                const boundary::Boundary& boundary, const TimeStepping& time,
+                                double stable_step_s) {
   const double damping_s = material.stiffness_damping_s;
   std::vector<int> multiples(1 + mesh.coarser.size(), 1);
   const bool damped = damping_s >= min_damping_in_steps * time.step_factor * stable_step_s;
@@ -191,8 +193,9 @@ std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& m
     for (std::size_t c = 0; c < in_block.size(); ++c)
       if (in_block[c])
         for (const auto n : mesh.cells[c]) of_block[n] = true;
-    const double omega = std::hypot(solid::largest_cell_frequency_rad_per_s(mesh, material, in_block),
-                                    largest_spring_frequency_rad_per_s(mesh, material, of_block));
+    const double omega =
+        std::hypot(solid::largest_cell_frequency_rad_per_s(mesh, material, in_block),
+                   boundary::largest_spring_frequency_rad_per_s(mesh, material, boundary, of_block));
     const double ratio = overestimate * solid::stable_step_s(omega, damping_s) / stable_step_s;
     for (multiples[b] = 1 << b; multiples[b] > ratio * (1 + 1e-9) && multiples[b] > 1;) multiples[b] /= 2;
   }
@@ -297,10 +300,10 @@ void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared, const B
 
 /// Nodes of the loaded edge that move with the level, and the rows of all in its cells.
 void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, const solid::Material& material,
-                     const std::vector<std::uint8_t>& level_of_node, const std::vector<bool>& in_level,
-                     const std::vector<bool>& in_cells) {
+                     const std::vector<mesh::Node>& driven, const std::vector<std::uint8_t>& level_of_node,
+                     const std::vector<bool>& in_level, const std::vector<bool>& in_cells) {
   std::vector<mesh::Node> top;
-  for (const auto n : mesh.driven_nodes()) {
+  for (const auto n : driven) {
     if (level_of_node[n] == l) level.top.push_back(n);
     if (in_cells[n]) top.push_back(n);
   }
@@ -421,7 +424,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
       level.takes_impulse.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
     }
-    set_loaded_edge(level, l, mesh, material, levels.level_of_node, in_level, in_cells);
+    set_loaded_edge(level, l, mesh, material, body.boundary.driven, levels.level_of_node, in_level, in_cells);
   }
   set_dashpots(levels, mesh, material, body);
   set_coarsest_bands(mesh, body, levels, largest);

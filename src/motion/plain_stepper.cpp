@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "boundary/boundary.hpp"
 #include "mesh/plate.hpp"
 #include "motion/body.hpp"
 #include "motion/stepper.hpp"
@@ -35,7 +36,8 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.mass_kg = solid::lumped_mass(mesh, material);
   body.damping_s = material.stiffness_damping_s;
   body.is_in_contact = mesh::marked(mesh, mesh.interface_nodes);
-  body.is_loaded = mesh::marked(mesh, mesh.driven_nodes());
+  const auto boundary = boundary::make_boundary(mesh, source.machine);
+  body.is_loaded = mesh::marked(mesh, boundary.driven);
   body.side = make_interface_side(mesh, body.mass_kg, BodyMotion{});
   body.side.landing = Landing(mesh, material, body.side.nodes);
   const auto levels = cell_levels(mesh, time, multiples);
@@ -58,10 +60,11 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.u_m = body.v_m_per_s = body.load_m_per_s2 = body.impulse_m_per_s = body.v_last_m_per_s =
       solid::Field(n);
   body.dashpots.resize(n);
-  body.springs = MachineSprings(mesh, material);
-  for (const auto& absorbing : mesh.boundary) {
-    const auto a = absorbing.node;
-    auto dashpot = make_dashpot(absorbing, material, body.mass_kg[a], body.levels[levels.of_node[a]].step_s);
+  body.springs = boundary::MachineSprings(mesh, material, boundary);
+  for (const auto& edge : boundary.nodes) {
+    const auto a = edge.node;
+    auto dashpot =
+        boundary::make_dashpot(edge, material, body.mass_kg[a], body.levels[levels.of_node[a]].step_s);
     dashpot.spring = body.springs.place(a);
     if (!body.is_in_contact[a]) {
       body.dashpots[a] = dashpot;

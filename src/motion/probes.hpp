@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/state.hpp"
+#include "boundary/machine.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/every.hpp"
@@ -45,6 +46,7 @@ struct BodySource {
   const BodySubdomain* part = nullptr;  ///< of a larger body; null for a whole one
   /// Where the mesh is that of the interface alone, and has reliefs: see mesh::make_corners.
   const mesh::Mesh* corners = nullptr;
+  boundary::Machine machine = {};  ///< that loads it
 };
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.

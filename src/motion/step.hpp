@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "boundary/dashpot.hpp"
+#include "boundary/machine_springs.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/interface_side.hpp"
 #include "motion/level.hpp"
@@ -50,9 +52,9 @@ struct PlainBody {
   double damping_s = 0;  ///< beta_R
   /// Nodes in contact are moved by it; those of the loaded edge keep their velocity.
   std::vector<bool> is_in_contact, is_loaded;
-  std::vector<PlainLevel> levels;  ///< coarsest first
-  std::vector<Dashpot> dashpots;   ///< of absorbing nodes not in contact, with d = 0 for all others
-  MachineSprings springs;
+  std::vector<PlainLevel> levels;           ///< coarsest first
+  std::vector<boundary::Dashpot> dashpots;  ///< of edge nodes not in contact, with d = 0 for all others
+  boundary::MachineSprings springs;
   InterfaceSide side;
   /// What the contact moves.
   ContactBody contact() { return {&side, &u_m, &v_m_per_s}; }
@@ -113,8 +115,9 @@ inline void move(PlainBody& body, const PlainLevel& level) {
     const double kick_x = dt * body.load_m_per_s2.x[n] + body.impulse_m_per_s.x[n];
     const double kick_y = dt * body.load_m_per_s2.y[n] + body.impulse_m_per_s.y[n];
     body.impulse_m_per_s.x[n] = body.impulse_m_per_s.y[n] = 0;
-    const auto after = damp(body.dashpots[n], body.springs, dt, body.mass_kg[n], {u.x[n], u.y[n]},
-                            {v_last.x[n], v_last.y[n]}, {v.x[n] + kick_x, v.y[n] + kick_y}, body.works);
+    const auto after =
+        boundary::damp(body.dashpots[n], body.springs, dt, body.mass_kg[n], {u.x[n], u.y[n]},
+                       {v_last.x[n], v_last.y[n]}, {v.x[n] + kick_x, v.y[n] + kick_y}, body.works);
     body.works.coupling_work +=
         0.5 * body.mass_kg[n] * (kick_x * (after.x + v_last.x[n]) + kick_y * (after.y + v_last.y[n]));
     v.x[n] = v_last.x[n] = after.x;

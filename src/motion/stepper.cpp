@@ -219,7 +219,7 @@ void Stepper::reverse(UpdateObserver& observer) {
   // impulses, at the places before them. It keeps the steady forces on shared nodes, without which it would
   // be another.
   std::vector<solid::Field> u;
-  std::vector<MachineSprings> springs;
+  std::vector<boundary::MachineSprings> springs;
   for (const auto& body : bodies_) {
     u.push_back(body.u_m());
     springs.push_back(body.springs());

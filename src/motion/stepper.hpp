@@ -74,7 +74,7 @@ class Stepper : public TimeStepper {
           const TimeStepping& time, const Execution& execution = {});
   /// Steps one body or two, the one above first.
   Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
-          const TimeStepping& time, const Execution& execution);
+          const TimeStepping& time, const Execution& execution = {});
 
   double stable_step_s() const override { return stable_step_s_; }
   double step_s() const override { return step_s_; }

@@ -157,14 +157,15 @@ void write_fronts(const std::filesystem::path& file, std::span<const fronts::Fro
 }
 
 void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
-                    const fracture::Recorded& recorded, const fracture::Bodies& bodies, Numbers numbers) {
+                    const record::Breakdown& breakdown,
+                    std::span<const std::vector<fracture::Passage>> passages, Numbers numbers) {
   std::vector<std::string> columns = {"front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s"};
   for (const auto& column : record::breakdown_fields) columns.emplace_back(column.name);
   for (const auto& column : fracture::passage_fields) columns.emplace_back(column.name);
   write_csv(file, columns, numbers, [&](Csv& csv) {
-    for (const auto& front : fronts) {
-      const auto passages = fracture::passages(front, recorded, bodies);
-      for (std::size_t k = 0; k < passages.size(); ++k) {
+    for (std::size_t f = 0; f < fronts.size(); ++f) {
+      const auto& front = fronts[f];
+      for (std::size_t k = 0; k < front.points.size(); ++k) {
         const auto& point = front.points[k];
         csv.add(fmt::format("{}", front.id));
         csv.add(point.x_m);
@@ -172,8 +173,8 @@ void write_fracture(const std::filesystem::path& file, std::span<const fronts::F
         csv.add(fmt::format("{}", front.direction));
         csv.add(point.v_tip_m_per_s, nan);
         for (const auto& column : record::breakdown_fields)
-          csv.add((recorded.breakdown.*column.member)[static_cast<std::size_t>(point.node)], nan);
-        for (const auto& column : fracture::passage_fields) csv.add(passages[k].*column.member, nan);
+          csv.add((breakdown.*column.member)[static_cast<std::size_t>(point.node)], nan);
+        for (const auto& column : fracture::passage_fields) csv.add(passages[f][k].*column.member, nan);
       }
     }
   });

@@ -36,8 +36,10 @@ void write_fronts(const std::filesystem::path& file, std::span<const fronts::Fro
 /// fracture.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, record::breakdown_fields of the node and
 /// fracture::passage_fields, a row per front and node in the order of travel; what is undefined is left
 /// empty.
+/// @param passages  of each front
 void write_fracture(const std::filesystem::path& file, std::span<const fronts::Front> fronts,
-                    const fracture::Recorded& recorded, const fracture::Bodies& bodies,
+                    const record::Breakdown& breakdown,
+                    std::span<const std::vector<fracture::Passage>> passages,
                     Numbers numbers = Numbers::finite);
 
 /// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per

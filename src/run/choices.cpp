@@ -54,7 +54,7 @@ double top_speed_m_per_s(const input::Case& config) {
 }
 
 double top_speed_in_event_m_per_s(const input::Case& config) {
-  return config.plate.pusher.is_there() ? 0 : top_speed_m_per_s(config);
+  return config.machine.pusher.is_there() ? 0 : top_speed_m_per_s(config);
 }
 
 stability::Bodies bodies_of(const input::Case& config) {
@@ -72,7 +72,7 @@ double advised_damping_s(const input::Case& config) {
 }
 
 statics::StaticSolver wanted_solver(const input::Case& config) {
-  if (config.plate.pusher.is_there() || !config.plate.machine.is_rigid() || input::is_slow(config))
+  if (config.machine.pusher.is_there() || !config.machine.is_rigid() || input::is_slow(config))
     return statics::StaticSolver::direct;
   const auto shape = [](const mesh::Plate& plate) {
     return statics::Shape{std::round(plate.width_m / plate.element_size_m),

@@ -13,6 +13,7 @@
 #include "base/caller.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "boundary/boundary.hpp"
 #include "fracture/static_crack.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
@@ -21,6 +22,7 @@
 #include "run/outlook.hpp"
 #include "run/run.hpp"
 #include "statics/condensed_interface.hpp"
+#include "statics/elastic_body.hpp"
 
 namespace slipfront::run {
 
@@ -96,12 +98,13 @@ input::Case in_fewer_elements(input::Case config) {
 /// Response of the sample with its far edges held.
 fracture::SlipResponse response_of_sample(const input::Case& config, const InitialState& initial) {
   using statics::Factorisation;
-  const auto plate = std::make_shared<const Factorisation>(initial.mesh, config.material,
-                                                           statics::constraint_under_shear(initial.mesh));
+  const auto plate = std::make_shared<const Factorisation>(
+      statics::ElasticBody{initial.mesh, config.material, config.machine},
+      statics::constraint_under_shear(boundary::make_boundary(initial.mesh, config.machine)));
   std::shared_ptr<const Factorisation> base;
   if (initial.base)
-    base = std::make_shared<const Factorisation>(*initial.base, input::base_material(config),
-                                                 statics::TopConstraint::both);
+    base = std::make_shared<const Factorisation>(
+        statics::ElasticBody{*initial.base, input::base_material(config)}, statics::TopConstraint::both);
   const statics::CondensedInterface interface(plate, base);
   return fracture::response_of_sample(interface.stiffness(), interface_x_m(initial.mesh),
                                       initial.tributary_m);

@@ -7,6 +7,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "boundary/pusher.hpp"
 #include "fronts/front.hpp"
 #include "input/entries.hpp"
 #include "input/friction_along_x.hpp"
@@ -255,11 +256,12 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
   if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
   Meshes meshes{only_interface ? mesh::make_interface(config.plate) : mesh::make_plate(config.plate), {}};
-  if (meshes.plate.is_pushed && meshes.plate.pushed_nodes.empty() && !meshes.plate.is_interface())
+  const auto& pusher = config.machine.pusher;
+  if (pusher.is_there() && !meshes.plate.is_interface() &&
+      boundary::pushed_nodes(meshes.plate, pusher).empty())
     throw UserError(
         "no node lies between {} = {:g} m and {} = {:g} m, where elements are larger; choose others",
-        Key("loading.pusher_from_m"), config.plate.pusher.from_m, Key("loading.pusher_to_m"),
-        config.plate.pusher.to_m);
+        Key("loading.pusher_from_m"), pusher.from_m, Key("loading.pusher_to_m"), pusher.to_m);
   motion::require_rows_fit(meshes.plate, config.time);
   if (input::has_base_body(config)) {
     meshes.base = make_base(config, only_interface);
@@ -330,7 +332,7 @@ statics::Statics statics_of(const input::Case& config, const mesh::Mesh& plate,
   if (base_mesh) base.emplace(statics::ElasticBody{*base_mesh, base_material});
   auto loading = config.loading;
   loading.solver = wanted_solver(config);
-  return {{plate, config.material},
+  return {{plate, config.material, config.machine},
           base,
           loading,
           at_all_nodes(mu_s, plate),

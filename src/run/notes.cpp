@@ -199,7 +199,7 @@ void add_sequence(const input::Case& config, Notes& notes) {
 
 /// A pusher that leaves nothing of the side.
 void add_pusher(const input::Case& config, Notes& notes) {
-  const auto& pusher = config.plate.pusher;
+  const auto& pusher = config.machine.pusher;
   constexpr double most = 0.9;
   const double share = (pusher.to_m - pusher.from_m) / config.plate.height_m;
   if (pusher.is_there() && share > most)
@@ -245,8 +245,8 @@ void add_damping(const input::Case& config, Notes& notes) {
 
 /// Stiffness of block and machine under uniform slip over the critical one of steady sliding (Ruina 1983).
 void add_stiff_machine(const input::Case& config, Notes& notes) {
-  const auto& machine = config.plate.machine;
-  if (!input::is_slow(config) || config.plate.pusher.is_there()) return;
+  const auto& machine = config.machine;
+  if (!input::is_slow(config) || config.machine.pusher.is_there()) return;
   const auto response = *interface::state_response(config.friction, 0);
   const double critical_Pa_per_m =
       (response.b - response.a) * input::nominal_pressure_Pa(config) / response.d_c_m;
@@ -350,7 +350,7 @@ std::vector<std::string> notes_of_case(const input::Case& config, const RuptureO
   add_tip_rate(config, notes);
   if (config.time.step_factor > 1)
     notes.emplace_back("the step is above the largest stable one (time.allow_unstable)");
-  for (const auto* more : {&rupture.doubts, &rupture.cautions})
+  for (const auto* more : {&rupture.doubts, &rupture.notes})
     notes.insert(notes.end(), more->begin(), more->end());
   for (auto& note : snapshot_plan(config, step_s).notes) notes.push_back(std::move(note));
   return notes;

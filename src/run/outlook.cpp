@@ -190,7 +190,7 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Insid
   return doubts;
 }
 
-std::string caution_of_mesh(double zone_elements, bool may_pass_c_S, bool has_state, bool nominal) {
+std::string note_on_mesh(double zone_elements, bool may_pass_c_S, bool has_state, bool nominal) {
   const auto is = fmt::format("the process zone has {:.3g} elements at rest and fewer in motion{}",
                               zone_elements, nominal ? ", under the nominal pressure" : "");
   if (has_state && may_pass_c_S && zone_elements < elements_for_transition)
@@ -205,8 +205,8 @@ std::string caution_of_mesh(double zone_elements, bool may_pass_c_S, bool has_st
 }
 
 /// Empty, or that the trigger's force acts against the shear.
-std::string caution_of_trigger(const input::Case& config, const statics::Equilibrium& before,
-                               std::span<const double> tributary_m) {
+std::string note_on_trigger(const input::Case& config, const statics::Equilibrium& before,
+                            std::span<const double> tributary_m) {
   if (!input::is_pushed_at_edge(config)) return {};
   const auto zone = motion::trigger_zone(before, config.event, config.trigger.zone_m);
   const double direction = motion::load_direction(before, tributary_m, zone);
@@ -215,18 +215,18 @@ std::string caution_of_trigger(const input::Case& config, const statics::Equilib
                      direction < 0 ? '-' : '+');
 }
 
-void add_cautions(const input::Case& config, RuptureOutlook& o) {
+void add_notes(const input::Case& config, RuptureOutlook& o) {
   if (!o.process_zone_elements) return;
   const auto bodies = bodies_of(config);
-  if (auto caution = caution_of_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
-                                     config.friction.has_state(), o.nominal);
-      !caution.empty())
-    o.cautions.push_back(std::move(caution));
+  if (auto note = note_on_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
+                               config.friction.has_state(), o.nominal);
+      !note.empty())
+    o.notes.push_back(std::move(note));
   const double length_m = stability::damping_length_m(bodies);
   const double harmless_m = harmless_damping * *o.of_nodes.process_zone_m;
   const double advised_m = advised_damping_s(config) * stability::slower_c_L_m_per_s(bodies);
   if (length_m > harmless_m)
-    o.cautions.push_back(fmt::format(
+    o.notes.push_back(fmt::format(
         "damping: beta_R c_L = {:.3g} m is {:.3g} % of the process zone; beyond 2 % it changes speeds and "
         "whether and where fronts pass c_S; choose {}, or compare with one",
         length_m, 100 * length_m / *o.of_nodes.process_zone_m,
@@ -296,10 +296,10 @@ RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
   add_to_regime(config, o);
-  add_cautions(config, o);
+  add_notes(config, o);
   if (const auto n_beyond = n_beyond_strength(inside); n_beyond > 0 && 2 * n_beyond <= inside.size())
-    o.cautions.push_back(fmt::format("{} is beyond {} at {} of {} nodes inside: they slip at once",
-                                     inside.t(), inside.strength(), n_beyond, inside.size()));
+    o.notes.push_back(fmt::format("{} is beyond {} at {} of {} nodes inside: they slip at once", inside.t(),
+                                  inside.strength(), n_beyond, inside.size()));
   return o;
 }
 
@@ -332,8 +332,8 @@ RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilib
   const auto inside = nodes_inside(config, before);
   auto o = outlook_of(config, inside, before.tractions.x_m, false);
   add_doubts(config, inside, o);
-  if (auto caution = caution_of_trigger(config, before, tributary_m); !caution.empty())
-    o.cautions.push_back(std::move(caution));
+  if (auto note = note_on_trigger(config, before, tributary_m); !note.empty())
+    o.notes.push_back(std::move(note));
   return o;
 }
 

@@ -27,8 +27,8 @@ struct RuptureOutlook {
   std::string steady_sliding;
   /// Its fronts as cracks, where that is known quickly.
   std::optional<FracturePrediction> cracks;
-  std::vector<std::string> doubts;    ///< why nothing may rupture, a line each
-  std::vector<std::string> cautions;  ///< what mesh and damping decide of it, a line each
+  std::vector<std::string> doubts;  ///< why nothing may rupture, a line each
+  std::vector<std::string> notes;   ///< what mesh and damping decide of it, a line each
 };
 
 /// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005), which peaks

@@ -258,6 +258,10 @@ void analyse(Result& result, const InitialState& initial, const RuptureOutlook& 
   const auto& config = result.config;
   const auto options = front_options(config, initial);
   result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
+  result.passages.clear();
+  const fracture::Recorded recorded{result.event.record.x_m, result.event.breakdown, result.event.tip_slip};
+  for (const auto& front : result.fronts)
+    result.passages.push_back(fracture::passages(front, recorded, bodies_of(config)));
   result.rupture = outlook;
   auto rupture = outlook;
   if (result.fronts.empty())

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fracture/passage.hpp"
 #include "fronts/front.hpp"
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
@@ -51,6 +52,7 @@ struct Result {
   double stepping_wall_s = 0;
   motion::Event event;
   std::vector<fronts::Front> fronts;
+  std::vector<std::vector<fracture::Passage>> passages;  ///< of each front, at its points
   RuptureOutlook rupture;
   std::vector<std::string> warnings;
   std::optional<SharedCost> shared;  ///< of several ranks

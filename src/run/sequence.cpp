@@ -8,6 +8,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "boundary/boundary.hpp"
 #include "fronts/fit.hpp"
 #include "input/friction_along_x.hpp"
 #include "run/choices.hpp"
@@ -114,7 +115,8 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
       path_(config),
       initial_(unloaded_state(config, processes)),
       statics_(statics_of(config_, initial_, [monitor] { return monitor(0, 0); })),
-      plate_(solid::make_operator(initial_.mesh, config.material)),
+      plate_(solid::make_operator(initial_.mesh, config.material,
+                                  boundary::make_boundary(initial_.mesh, config.machine).edge_sets())),
       monitor_(monitor) {
   if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
   describe_solver(config, statics_, initial_);
@@ -196,7 +198,7 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
         at, acts_m, Key("plate.height_m"), Key("plate.width_m"));
   const double most_m = std::max(plate.width_m, plate.height_m);
   const double edge_m =
-      shear_m - rest_.shear_m - rest_.moved_m - shear_force / plate.machine.shear_stiffness_Pa;
+      shear_m - rest_.shear_m - rest_.moved_m - shear_force / config_.machine.shear_stiffness_Pa;
   if (std::isinf(path_.end_s()) && !(edge_m <= most_m))
     throw UserError(
         "{} no event has begun, and the loaded edge has moved by more than the plate's size, {:g} m: "

@@ -176,7 +176,7 @@ UserError SequenceSession::does_not_rest(const std::string& part, const Result& 
   const auto& row = result.event.last_row;
   const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
   if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
-    return config_.plate.machine.is_rigid()
+    return config_.machine.is_rigid()
                ? UserError(
                      "{}, and slip does not slow down: the load drives it on; choose a slower one ({}), or "
                      "press harder; {}",

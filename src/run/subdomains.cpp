@@ -44,7 +44,7 @@ class Columns {
       : plate(mesh::make_columns(config.plate, all)), base_material_(input::base_material(config)) {
     if (input::has_base_body(config)) base = mesh::make_columns(input::base_plate(config), all);
     for (const auto& of_body : steps) parts_.push_back({all, n_columns, own, of_body, largest});
-    sources_.push_back({plate, config.material, &parts_.front()});
+    sources_.push_back({plate, config.material, &parts_.front(), nullptr, config.machine});
     if (base) sources_.push_back({*base, base_material_, &parts_.back()});
   }
   Columns(const Columns&) = delete;
@@ -68,7 +68,7 @@ GlobalBodies::GlobalBodies(const input::Case& config, const mesh::Mesh& plate,
     : config_(config), base_material_(input::base_material(config)) {
   if (plate.is_interface() && config.plate.corner == mesh::Corner::relief)
     corners_ = mesh::make_corners(config.plate, solid::rings_around_others);
-  bodies_.push_back({plate, config.material, nullptr, corners_ ? &*corners_ : nullptr});
+  bodies_.push_back({plate, config.material, nullptr, corners_ ? &*corners_ : nullptr, config.machine});
   if (base) bodies_.push_back({*base, base_material_});
 }
 

@@ -405,9 +405,8 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   const Status& status) {
   const auto numbers = numbers_of(status);
   results::write_fronts(dir / "fronts.csv", result.fronts, numbers);
-  results::write_fracture(dir / "fracture.csv", result.fronts,
-                          {result.event.record.x_m, result.event.breakdown, result.event.tip_slip},
-                          bodies_of(result.config), numbers);
+  results::write_fracture(dir / "fracture.csv", result.fronts, result.event.breakdown, result.passages,
+                          numbers);
   results::write_energies(dir / "energy.csv", energies, numbers);
   write_json(dir, run_json(result, initial, status));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "boundary/machine.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 
@@ -12,6 +13,7 @@ namespace slipfront::statics {
 struct ElasticBody {
   const mesh::Mesh& mesh;
   const solid::Material& material;
+  boundary::Machine machine = {};  ///< that loads it
 };
 
 }  // namespace slipfront::statics

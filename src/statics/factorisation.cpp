@@ -19,9 +19,9 @@ namespace slipfront::statics {
 namespace {
 
 /// Those whose rows of K feel the loaded edge or the pusher: their own nodes and the neighbours.
-std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
+std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh, const std::vector<mesh::Node>& pushed) {
   auto is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
-  for (const auto n : mesh.pushed_nodes) is_loaded[n] = true;
+  for (const auto n : pushed) is_loaded[n] = true;
   std::vector<bool> feels(mesh.n_nodes(), false);
   for (const auto& cell : mesh.cells)
     if (std::ranges::any_of(cell, [&](mesh::Node n) { return is_loaded[n]; }))
@@ -34,8 +34,9 @@ std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
 
 }  // namespace
 
-Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top)
-    : mesh_(mesh), top_(top) {
+Factorisation::Factorisation(const ElasticBody& body, TopConstraint top)
+    : mesh_(body.mesh), boundary_(boundary::make_boundary(body.mesh, body.machine)), top_(top) {
+  const auto& material = body.material;
   try {
     set_springs();
     for (const std::size_t c : {0, 1})
@@ -45,7 +46,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
     throw UserError("out of memory in the static solution (factorisation); choose a larger {}",
                     Key("plate.element_size_m"));
   }
-  near_top_ = solid::assemble_rows(mesh, material, nodes_near_top(mesh));
+  near_top_ = solid::assemble_rows(mesh_, material, nodes_near_top(mesh_, boundary_.pushed));
 }
 
 void Factorisation::set_springs() {
@@ -55,7 +56,7 @@ void Factorisation::set_springs() {
     if (top_ != TopConstraint::machine) spring_N_per_m_[2 * n + 1] = infinity;
   }
   if (top_ != TopConstraint::machine) return;
-  for (const auto& a : mesh_.boundary) {
+  for (const auto& a : boundary_.nodes) {
     spring_N_per_m_[2 * a.node] = a.spring_x_N_per_m.value_or(0);
     spring_N_per_m_[2 * a.node + 1] = a.spring_y_N_per_m.value_or(0);
   }
@@ -153,7 +154,7 @@ solid::Field Factorisation::displacement(const Load& load, const Eigen::VectorXd
 
 solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_N) const {
   SLIPFRONT_ASSERT(spring_[0] == 0 && spring_[1] == 0, "forces on a plate that nothing holds");
-  return solve(unit_motion(mesh_, EdgeMotion::none), interface_force_N);
+  return solve(unit_motion(mesh_, boundary_, EdgeMotion::none), interface_force_N);
 }
 
 solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::VectorXd& interface_force) const {
@@ -170,12 +171,12 @@ solid::Field Factorisation::solve(const TopDisplacement& top, const Eigen::Vecto
     if (top.tilt_force_N.size() > 0) f[unknown_[at]] += (top.tilt_force_N.*component)[n];
   };
   for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
-    if (!mesh_.is_pushed || top_ != TopConstraint::machine)
+    if (boundary_.pushed.empty() || top_ != TopConstraint::machine)
       hold(&solid::Field::x, mesh_.far_edge_nodes[k], top.u_x_m[k]);
     hold(&solid::Field::y, mesh_.far_edge_nodes[k], top.u_y_m[k]);
   }
-  for (std::size_t k = 0; top_ == TopConstraint::machine && k < mesh_.pushed_nodes.size(); ++k)
-    hold(&solid::Field::x, mesh_.pushed_nodes[k], top.pushed_u_x_m[k]);
+  for (std::size_t k = 0; top_ == TopConstraint::machine && k < boundary_.pushed.size(); ++k)
+    hold(&solid::Field::x, boundary_.pushed[k], top.pushed_u_x_m[k]);
   solid::for_each_row_product(near_top_, u, [&](std::size_t r, double x, double y) {
     const auto n = near_top_.node[r];
     if (unknown_[2 * n] >= 0) f[unknown_[2 * n]] -= x;

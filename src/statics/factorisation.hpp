@@ -8,9 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "boundary/boundary.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "statics/elastic_body.hpp"
 #include "statics/frontal_cholesky.hpp"
 #include "statics/plate_solver.hpp"
 
@@ -30,7 +32,7 @@ namespace slipfront::statics {
 class Factorisation {
  public:
   /// @throws UserError where the factor does not fit into the memory at hand, with the figures.
-  Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top);
+  Factorisation(const ElasticBody& body, TopConstraint top);
   Factorisation(const Factorisation&) = delete;
   Factorisation& operator=(const Factorisation&) = delete;
 
@@ -62,6 +64,7 @@ class Factorisation {
   Eigen::VectorXd at_interface(const solid::Field& u) const;
 
   const mesh::Mesh& mesh_;
+  boundary::Boundary boundary_;
   TopConstraint top_;
   /// Stiffness of what holds the loaded edge and what is pushed; infinite: prescribed. [2 nodes], N/m
   std::vector<double> spring_N_per_m_;

@@ -147,7 +147,8 @@ std::int32_t GridLevel::block_row(mesh::Node n) const {
 }
 
 GridLevel make_level(const ElasticBody& plate) {
-  const auto& [mesh, material] = plate;
+  const auto& mesh = plate.mesh;
+  const auto& material = plate.material;
   SLIPFRONT_ASSERT(mesh.period_m == 0, "the logical grid of a periodic plate is not a rectangle");
   GridLevel level;
   level.columns = mesh.grid.columns;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "boundary/boundary.hpp"
 #include "statics/condensed_interface.hpp"
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
@@ -90,27 +91,29 @@ class CondensedLoadCase : public LoadCase {
 
 class DirectSolver : public PlateSolver {
  public:
-  DirectSolver(const mesh::Mesh& mesh, const solid::Material& material,
-               const std::optional<ElasticBody>& base)
-      : mesh_(mesh),
-        material_(material),
-        gap_m_(gaps_m(mesh, base ? &base->mesh : nullptr)),
-        held_plate_(std::make_shared<Factorisation>(mesh, material, constraint_under_shear(mesh))) {
-    if (base) base_ = std::make_shared<Factorisation>(base->mesh, base->material, TopConstraint::both);
+  DirectSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base)
+      : mesh_(plate.mesh),
+        material_(plate.material),
+        machine_(plate.machine),
+        boundary_(boundary::make_boundary(mesh_, machine_)),
+        gap_m_(gaps_m(mesh_, base ? &base->mesh : nullptr)),
+        held_plate_(std::make_shared<Factorisation>(plate, constraint_under_shear(boundary_))) {
+    if (base) base_ = std::make_shared<Factorisation>(*base, TopConstraint::both);
     held_ = std::make_shared<CondensedInterface>(held_plate_, base_);
   }
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, EdgeMotion motion,
                                       const DisplacementOfBodies*, int) override {
     auto interface = held_;
-    if (constraint != constraint_under_shear(mesh_))
+    if (constraint != constraint_under_shear(boundary_))
       interface = std::make_shared<CondensedInterface>(
-          std::make_shared<Factorisation>(mesh_, material_, constraint), base_);
-    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top, unit_motion(mesh_, motion));
+          std::make_shared<Factorisation>(ElasticBody{mesh_, material_, machine_}, constraint), base_);
+    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top,
+                                               unit_motion(mesh_, boundary_, motion));
   }
   std::unique_ptr<SlidingInterface> sliding(const TopDisplacement& top,
                                             const std::vector<Contact>& contact) const override {
-    const auto unit = unit_motion(mesh_, EdgeMotion::along_x);
+    const auto unit = unit_motion(mesh_, boundary_, EdgeMotion::along_x);
     return held_->sliding(held_->load(top), held_->load(unit), gap_m_, mesh::tributary_lengths_m(mesh_),
                           contact);
   }
@@ -127,6 +130,8 @@ class DirectSolver : public PlateSolver {
  private:
   const mesh::Mesh& mesh_;
   solid::Material material_;
+  boundary::Machine machine_;
+  boundary::Boundary boundary_;
   std::vector<double> gap_m_;
   // Held as under shear.
   std::shared_ptr<const Factorisation> held_plate_, base_;
@@ -161,12 +166,12 @@ void TopDisplacement::add(double share, const TopDisplacement& more) {
     for (std::size_t k = 0; k < (this->*of).size(); ++k) (this->*of)[k] += share * (more.*of)[k];
 }
 
-TopDisplacement unit_motion(const mesh::Mesh& mesh, EdgeMotion motion) {
+TopDisplacement unit_motion(const mesh::Mesh& mesh, const boundary::Boundary& boundary, EdgeMotion motion) {
   const std::size_t n = mesh.far_edge_nodes.size();
-  const bool is_along_x = motion == EdgeMotion::along_x, is_pushed = mesh.is_pushed;
+  const bool is_along_x = motion == EdgeMotion::along_x, is_pushed = !boundary.pushed.empty();
   return {std::vector<double>(n, is_along_x && !is_pushed ? 1.0 : 0.0),
           std::vector<double>(n, motion == EdgeMotion::down ? -1.0 : 0.0),
-          std::vector<double>(is_pushed ? mesh.pushed_nodes.size() : 0, is_along_x ? 1.0 : 0.0)};
+          std::vector<double>(boundary.pushed.size(), is_along_x ? 1.0 : 0.0)};
 }
 
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
@@ -197,17 +202,18 @@ std::string_view name_of(StaticSolver solver) {
   return solver == StaticSolver::direct ? "direct" : "iterative";
 }
 
-std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
-                                               StaticSolver solver, const std::optional<ElasticBody>& base) {
+std::unique_ptr<PlateSolver> make_plate_solver(const ElasticBody& plate, StaticSolver solver,
+                                               const std::optional<ElasticBody>& base) {
+  const auto& mesh = plate.mesh;
   if (base) require_base_fits(mesh, base->mesh);
   std::optional<Shape> shape_of_base;
   if (base) shape_of_base = shape_of(base->mesh);
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
-  if (mesh.has_machine || choose_solver(solver, n_unknowns) == StaticSolver::direct)
-    return std::make_unique<DirectSolver>(mesh, material, base);
-  return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);
+  if (!plate.machine.prescribes_far_edge() || choose_solver(solver, n_unknowns) == StaticSolver::direct)
+    return std::make_unique<DirectSolver>(plate, base);
+  return std::make_unique<IterativeSolver>(plate, base);
 }
 
 }  // namespace slipfront::statics

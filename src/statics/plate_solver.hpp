@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "boundary/boundary.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/operator.hpp"
 #include "statics/elastic_body.hpp"
@@ -17,12 +18,12 @@ namespace slipfront::statics {
 /// Contact state of an interface node at rest.
 enum class Contact : std::uint8_t { stick, slip, open };
 
-/// Which displacements of the loaded edge are prescribed; machine: what mesh.boundary says of it, and of the
-/// nodes under the pusher.
+/// Which displacements of the loaded edge are prescribed; machine: those that a rigid machine moves, at that
+/// edge and under the pusher.
 enum class TopConstraint { both, vertical, machine };
 /// What holds a plate that is sheared.
-inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
-  return mesh.has_machine ? TopConstraint::machine : TopConstraint::both;
+inline TopConstraint constraint_under_shear(const boundary::Boundary& boundary) {
+  return boundary.driven.empty() ? TopConstraint::machine : TopConstraint::both;
 }
 
 /// How the loaded edge, or what is pushed, moves on from its prescribed displacements, by a length that
@@ -30,8 +31,8 @@ inline TopConstraint constraint_under_shear(const mesh::Mesh& mesh) {
 enum class EdgeMotion : std::uint8_t { none, along_x, down };
 
 /// Prescribed displacements of the loaded edge, in the order of mesh.far_edge_nodes (u_x is ignored where
-/// only the vertical is prescribed), and of mesh.pushed_nodes, where they are; with a machine's spring in
-/// between, those at which it bears its force of the tilt.
+/// only the vertical is prescribed), and of the nodes under the pusher, where they are; with a machine's
+/// spring in between, those at which it bears its force of the tilt.
 struct TopDisplacement {
   std::vector<double> u_x_m, u_y_m, pushed_u_x_m = {};
   solid::Field tilt_force_N = {};  ///< of springs [nodes]; empty: none
@@ -39,7 +40,7 @@ struct TopDisplacement {
   void add(double share, const TopDisplacement& more);
 };
 /// Moved on by 1 m.
-TopDisplacement unit_motion(const mesh::Mesh& mesh, EdgeMotion motion);
+TopDisplacement unit_motion(const mesh::Mesh& mesh, const boundary::Boundary& boundary, EdgeMotion motion);
 
 /// What the contact does to each node of mesh.interface_nodes: u_y = -gap unless open, u_x = anchor where it
 /// sticks, f_x = -slip_sign mu_s f_y where it slips. u is the displacement relative to the rigid plane, or to
@@ -118,8 +119,7 @@ inline constexpr double max_iterative_slenderness = 10, max_iterative_height_rat
 std::string_view name_of(StaticSolver solver);
 
 /// By the solver that the bodies' shapes leave of `solver`.
-std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
-                                               StaticSolver solver,
+std::unique_ptr<PlateSolver> make_plate_solver(const ElasticBody& plate, StaticSolver solver,
                                                const std::optional<ElasticBody>& base = std::nullopt);
 
 }  // namespace slipfront::statics

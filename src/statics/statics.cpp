@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "boundary/boundary.hpp"
 #include "statics/load_case.hpp"
 
 namespace slipfront::statics {
@@ -396,6 +397,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
                  const Loading& loading, std::vector<double> mu_s, std::string mu_s_key,
                  MayContinue may_continue)
     : mesh_(plate_body.mesh),
+      boundary_(boundary::make_boundary(mesh_, plate_body.machine)),
       base_mesh_(base ? &base->mesh : nullptr),
       loading_(loading),
       mu_s_(std::move(mu_s)),
@@ -403,18 +405,18 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       may_continue_(std::move(may_continue)) {
   const auto& mesh = mesh_;
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.interface_nodes.size(), "mu_s of another interface");
-  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
+  solver_ = make_plate_solver(plate_body, loading.solver, base);
   press_down(height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0));
   tilted_top_.tilt_force_N = tilt_force_N(plate_body.material);
-  pushed_rows_ = solid::assemble_rows(mesh, plate_body.material, mesh.pushed_nodes);
+  pushed_rows_ = solid::assemble_rows(mesh, plate_body.material, boundary_.pushed);
   const auto tilted_u = displacement_of(tilted_);
   sheared_ =
-      solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
+      solver_->load_case(constraint_under_shear(boundary_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 void Statics::press_down(double compliance_m_per_Pa) {
   const auto& mesh = mesh_;
-  const bool is_free = loading_.top_during_tilt == TopEdge::free || mesh.is_pushed;
+  const bool is_free = loading_.top_during_tilt == TopEdge::free || !boundary_.pushed.empty();
   const auto& loaded = mesh.far_edge_nodes;
   const double width_m = mesh.x_m[loaded.back()] - mesh.x_m[loaded.front()];
   const auto force_N_per_m = normal_force_N_per_m(loading_, width_m);
@@ -470,17 +472,18 @@ void Statics::press_down(double compliance_m_per_Pa) {
   if (is_free)
     for (std::size_t k = 0; k < mesh.far_edge_nodes.size(); ++k)
       tilt.u_x_m[k] = tilted_.u_m.x[mesh.far_edge_nodes[k]];
-  for (const auto n : mesh.pushed_nodes) tilt.pushed_u_x_m.push_back(tilted_.u_m.x[n]);
+  for (const auto n : boundary_.pushed) tilt.pushed_u_x_m.push_back(tilted_.u_m.x[n]);
   tilted_top_ = tilt;
 }
 
 solid::Field Statics::tilt_force_N(const solid::Material& material) const {
   std::vector<mesh::Node> nodes;
   solid::Field has_spring(mesh_.n_nodes());
-  for (const auto& a : mesh_.boundary) {
-    has_spring.x[a.node] = mesh::is_spring(a.spring_x_N_per_m);
-    has_spring.y[a.node] = mesh::is_spring(a.spring_y_N_per_m);
-    if (mesh::is_spring(a.spring_x_N_per_m) || mesh::is_spring(a.spring_y_N_per_m)) nodes.push_back(a.node);
+  for (const auto& a : boundary_.nodes) {
+    has_spring.x[a.node] = boundary::is_spring(a.spring_x_N_per_m);
+    has_spring.y[a.node] = boundary::is_spring(a.spring_y_N_per_m);
+    if (boundary::is_spring(a.spring_x_N_per_m) || boundary::is_spring(a.spring_y_N_per_m))
+      nodes.push_back(a.node);
   }
   if (nodes.empty()) return {};
   solid::Field force_N(mesh_.n_nodes());
@@ -494,7 +497,7 @@ solid::Field Statics::tilt_force_N(const solid::Material& material) const {
 }
 
 double Statics::shear_height_m(const Equilibrium& state) const {
-  if (!mesh_.is_pushed) return mesh_.y_m[mesh_.far_edge_nodes.front()];
+  if (boundary_.pushed.empty()) return mesh_.y_m[mesh_.far_edge_nodes.front()];
   if (state.shear_m == 0) return nan;
   double force_N = 0, moment_N_m = 0;
   solid::for_each_row_product(pushed_rows_, state.u_m, [&](std::size_t r, double x, double /*y*/) {
@@ -508,11 +511,12 @@ double Statics::machine_energy_J_per_m(const Equilibrium& state) const {
   double energy = 0;
   // By how much a spring is longer than in the tilted plate.
   const auto add = [&](const std::optional<double>& spring_N_per_m, double force_N, double stretch_m) {
-    if (mesh::is_spring(spring_N_per_m)) energy += (force_N + 0.5 * *spring_N_per_m * stretch_m) * stretch_m;
+    if (boundary::is_spring(spring_N_per_m))
+      energy += (force_N + 0.5 * *spring_N_per_m * stretch_m) * stretch_m;
   };
   const auto &u = state.u_m, &u_tilted = tilted_.u_m, &force_N = tilted_top_.tilt_force_N;
   if (force_N.size() == 0) return 0;
-  for (const auto& [n, side_m, top_m, spring_x, spring_y] : mesh_.boundary) {
+  for (const auto& [n, side_m, top_m, spring_x, spring_y] : boundary_.nodes) {
     add(spring_x, force_N.x[n], state.shear_m - (u.x[n] - u_tilted.x[n]));
     add(spring_y, force_N.y[n], -(u.y[n] - u_tilted.y[n]));
   }
@@ -556,8 +560,8 @@ Equilibrium Statics::shear(FindShear&& find_shear, bool sticks_inside) const {
   } else {
     const auto tilted_u = displacement_of(tilted_);
     const auto make_case = [&](int level) {
-      return solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u,
-                                level);
+      return solver_->load_case(constraint_under_shear(boundary_), tilted_top_, EdgeMotion::along_x,
+                                &tilted_u, level);
     };
     settled = settle_on_levels(mesh_, base_mesh_, *solver_, sticking(held_contact_, held_u_x_m_, mu_s_),
                                make_case, settle_problem, *sheared_);
@@ -588,7 +592,7 @@ void Statics::hold(std::vector<Contact> contact, std::vector<double> u_x_m) {
   // What was solved before leaves no rounding behind.
   const auto tilted_u = displacement_of(tilted_);
   sheared_ =
-      solver_->load_case(constraint_under_shear(mesh_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
+      solver_->load_case(constraint_under_shear(boundary_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 void Statics::set_mu_s(std::vector<double> mu_s, std::string key) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "boundary/boundary.hpp"
 #include "mesh/mesh.hpp"
 #include "record/record.hpp"
 #include "solid/material.hpp"
@@ -164,6 +165,7 @@ class Statics {
   std::string name_of_ratio(double share) const;
 
   const mesh::Mesh& mesh_;
+  boundary::Boundary boundary_;
   const mesh::Mesh* base_mesh_;  ///< null on the rigid plane
   Loading loading_;
   std::vector<double> mu_s_;  ///< [interface nodes]

@@ -278,7 +278,7 @@ TEST(Schema, SlowSlipBetweenEventsNeedsAFactorisationAndAPressure) {
 
 TEST(Schema, PushersReadBackFromToml) {
   Case pushed;
-  pushed.plate.pusher = {0.01, 0.02};
+  pushed.machine.pusher = {0.01, 0.02};
   expect_equal(parsed(to_toml(pushed)), pushed);
 }
 
@@ -298,9 +298,9 @@ TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
 
 TEST(Schema, MachinesReadBackFromToml) {
   Case on_machine;
-  on_machine.plate.machine = {2e9, 0};
+  on_machine.machine = {2e9, 0};
   expect_equal(parsed(to_toml(on_machine)), on_machine);
-  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").plate.machine.is_rigid());
+  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").machine.is_rigid());
 }
 
 TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {

@@ -107,7 +107,7 @@ TEST(GradedPlate, AbsorbingEdgesAreCoveredOnce) {
     plate.top = Top::absorbing;
     double left_m = 0, right_m = 0, top_m = 0;
     const auto mesh = make_plate(plate);
-    for (const auto& a : mesh.boundary) {
+    for (const auto& a : mesh.absorbing_nodes) {
       (mesh.x_m[a.node] == 0 ? left_m : right_m) += a.side_m;
       top_m += a.top_m;
     }

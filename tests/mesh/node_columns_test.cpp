@@ -152,14 +152,16 @@ void expect_columns(const Plate& plate, const Subset& held) {
   };
   expect_some(part.interface_nodes, whole.interface_nodes);
   expect_some(part.far_edge_nodes, whole.far_edge_nodes);
-  expect_some(part.pushed_nodes, whole.pushed_nodes);
-  using Grip = std::optional<double>;
-  std::vector<std::tuple<Node, double, double, Grip, Grip>> absorbing, expected_absorbing;
-  for (const auto& a : part.boundary)
-    absorbing.emplace_back(in_whole(a.node), a.side_m, a.top_m, a.spring_x_N_per_m, a.spring_y_N_per_m);
-  for (const auto& a : whole.boundary)
-    if (is_held(a.node))
-      expected_absorbing.emplace_back(a.node, a.side_m, a.top_m, a.spring_x_N_per_m, a.spring_y_N_per_m);
+  expect_some(part.left_nodes, whole.left_nodes);
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < whole.far_edge_nodes.size(); ++k)
+    if (is_held(whole.far_edge_nodes[k])) shares.push_back(whole.far_edge_shares[k]);
+  EXPECT_EQ(part.far_edge_shares, shares);
+  std::vector<std::tuple<Node, double, double>> absorbing, expected_absorbing;
+  for (const auto& [n, side_m, top_m] : part.absorbing_nodes)
+    absorbing.emplace_back(in_whole(n), side_m, top_m);
+  for (const auto& [n, side_m, top_m] : whole.absorbing_nodes)
+    if (is_held(n)) expected_absorbing.emplace_back(n, side_m, top_m);
   EXPECT_EQ(absorbing, expected_absorbing);
   const bool has_both_sides = held.has(0) && held.has(of_whole.n_columns() - 1);
   EXPECT_EQ(part.period_m, has_both_sides ? whole.period_m : 0);
@@ -192,8 +194,6 @@ TEST(MakeColumns, MakesTheNodesThereAndTheCellsBetweenThem) {
     some.fillet_radius_m = 4e-3;
     some.fine_height_m = 8e-3;
     if (form.coarsenings == 2) some.height_m = 0.06;
-    some.machine = {2e9, 1e9};
-    if (form.sides == Sides::free && form.corner != Corner::fillet) some.pusher = {2e-3, 0.02};
     // Cuts anywhere, within units of transitions, too.
     for (const auto& range : {Span{0, 25}, {9, 33}, {18, form.columns + 1}, {15, 34}})
       expect_columns(some, Subset({range}));

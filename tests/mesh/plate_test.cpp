@@ -135,11 +135,11 @@ TEST(Plate, FreeTopIsNeitherLoadedNorAbsorbs) {
   auto plate = small_plate(Corner::none);
   plate.top = Top::free;
   EXPECT_TRUE(make_plate(plate).far_edge_nodes.empty());
-  EXPECT_TRUE(make_plate(plate).boundary.empty());
+  EXPECT_TRUE(make_plate(plate).absorbing_nodes.empty());
   // The upper ends of absorbing sides move and so absorb, too.
   plate.sides = Sides::absorbing;
   double side_m = 0;
-  for (const auto& a : make_plate(plate).boundary) {
+  for (const auto& a : make_plate(plate).absorbing_nodes) {
     side_m += a.side_m;
     EXPECT_EQ(a.top_m, 0);
   }
@@ -152,32 +152,8 @@ TEST(Plate, AbsorbsAlongItsWholeTop) {
     plate.top = Top::absorbing;
     plate.sides = sides;
     double top_m = 0;
-    for (const auto& a : make_plate(plate).boundary) top_m += a.top_m;
+    for (const auto& a : make_plate(plate).absorbing_nodes) top_m += a.top_m;
     EXPECT_NEAR(top_m, plate.width_m, 100 * eps);
-  }
-}
-
-TEST(Plate, SharesTheStiffnessOfItsMachineAmongTheNodes) {
-  for (const bool is_pushed : {false, true}) {
-    Plate plate{.width_m = 0.04, .height_m = 0.02, .element_size_m = 1e-3, .coarsenings = 1};
-    plate.fine_height_m = 6e-3;
-    plate.machine = {3e9, 5e9};
-    if (is_pushed) plate.pusher = {2e-3, plate.height_m};
-    const auto mesh = make_plate(plate);
-    EXPECT_TRUE(mesh.has_machine);
-    EXPECT_TRUE(mesh.driven_nodes().empty());
-    double x_N_per_m = 0, y_N_per_m = 0;
-    std::size_t n_x = 0, n_y = 0;
-    for (const auto& a : mesh.boundary) {
-      x_N_per_m += a.spring_x_N_per_m.value_or(0);
-      y_N_per_m += a.spring_y_N_per_m.value_or(0);
-      n_x += a.spring_x_N_per_m.has_value();
-      n_y += a.spring_y_N_per_m.has_value();
-    }
-    EXPECT_NEAR(x_N_per_m, 3e9, 3e9 * 100 * eps);
-    EXPECT_NEAR(y_N_per_m, 5e9, 5e9 * 100 * eps);
-    EXPECT_EQ(n_x, is_pushed ? mesh.pushed_nodes.size() : mesh.far_edge_nodes.size());
-    EXPECT_EQ(n_y, mesh.far_edge_nodes.size());
   }
 }
 

@@ -175,7 +175,7 @@ class Team {
       meshes.push_back(mesh::make_columns(bodies_.plates[b], all));
       parts.push_back({all, partition.n_columns(), partition.own(rank), steps_[b],
                        [&](std::span<double> values) { processes.reduce_max(values); }});
-      own.push_back({meshes.back(), sources[b].material, &parts.back()});
+      own.push_back({meshes.back(), sources[b].material, &parts.back(), nullptr, sources[b].machine});
     }
     return std::make_unique<DistributedStepper>(processes, whole, own, problem_.contact, problem_.time,
                                                 problem_.execution);

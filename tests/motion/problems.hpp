@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "boundary/machine.hpp"
 #include "mesh/plate.hpp"
 #include "motion/support.hpp"
 #include "record/probes.hpp"
@@ -26,6 +27,7 @@ inline const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
 /// A rupture from a weakened patch under uniform tractions.
 struct Problem {
   mesh::Plate plate{.width_m = 0.2, .height_m = 0.03, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  boundary::Machine machine = {};
   bool is_strained = false;  ///< before the event
   const solid::Material* below = nullptr;
   double height_below_m = plate.height_m;
@@ -41,7 +43,8 @@ struct Problem {
 };
 
 struct Bodies {
-  explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)), material(pmma) {
+  explicit Bodies(const Problem& problem)
+      : above(mesh::make_plate(problem.plate)), material(pmma), machine(problem.machine) {
     material.stiffness_damping_s = problem.stiffness_damping_s;
     plates.push_back(problem.plate);
     if (problem.below != nullptr) add_below(problem);
@@ -57,13 +60,14 @@ struct Bodies {
     material_below.stiffness_damping_s = problem.stiffness_damping_s;
   }
   std::vector<BodySource> sources() const {
-    std::vector<BodySource> sources = {{above, material}};
+    std::vector<BodySource> sources = {{above, material, nullptr, nullptr, machine}};
     if (below) sources.push_back({*below, material_below});
     return sources;
   }
   std::vector<mesh::Plate> plates;
   mesh::Mesh above;
   solid::Material material, material_below;
+  boundary::Machine machine;
   std::optional<mesh::Mesh> below;
 };
 
@@ -158,15 +162,15 @@ inline void repeating_alone(Problem& p) {
   p.plate.sides = mesh::Sides::periodic;
 }
 inline void pushed(Problem& p) {
-  p.plate.pusher = {1e-3, 20e-3};
+  p.machine.pusher = {1e-3, 20e-3};
 }
 /// By springs in all that a machine may hold.
 inline void gripped(Problem& p) {
-  p.plate.machine = {1e12, 2e11};
+  p.machine = {1e12, 2e11};
   p.is_strained = true;
 }
 inline void under_dead_load(Problem& p) {
-  p.plate.machine.normal_stiffness_Pa = 0;
+  p.machine.normal_stiffness_Pa = 0;
   p.is_strained = true;
 }
 /// Nodes around an onset: five parts have 40 columns each.

@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "boundary/pusher.hpp"
 #include "cases.hpp"
 #include "input/friction_along_x.hpp"
 #include "interface/friction/rate_and_state.hpp"
@@ -191,7 +192,7 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
   auto config = sequence_case(200, 0.5);
   test::law(config).mu_s = 0.7;
   config.plate.corner = mesh::Corner::none;
-  config.plate.pusher = {8e-3, 16e-3};
+  config.machine.pusher = {8e-3, 16e-3};
   config.loading.mean_pressure_Pa = 5e6;
   config.sequence.to_global_sliding = true;
   Sequence sequence(config, test::go_on);
@@ -203,7 +204,8 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
     sequence.record_event(result);
     ASSERT_FALSE(result.event.snapshots.empty());
     for (const auto& snapshot : result.event.snapshots) {
-      for (const auto n : initial->mesh.pushed_nodes) EXPECT_EQ(snapshot.v_m_per_s.x[n], 0);
+      for (const auto n : boundary::pushed_nodes(initial->mesh, config.machine.pusher))
+        EXPECT_EQ(snapshot.v_m_per_s.x[n], 0);
       for (const auto n : initial->mesh.far_edge_nodes) EXPECT_EQ(snapshot.v_m_per_s.y[n], 0);
     }
   }
@@ -232,7 +234,7 @@ TEST(Sequence, APusherNeedsNodes) {
   config.plate.corner = mesh::Corner::none;
   config.plate.coarsenings = 1;
   config.plate.fine_height_m = 0.02;
-  config.plate.pusher = {0.0695, 0.0745};
+  config.machine.pusher = {0.0695, 0.0745};
   EXPECT_THAT(error_of([&] { Sequence(config, test::go_on); }), HasSubstr("no node lies between"));
 }
 

@@ -61,7 +61,7 @@ TEST_P(FactorisedPlate, DissectionIsAPermutationWithTheInterfaceLast) {
 
 TEST_P(FactorisedPlate, CondensedStiffnessIsTheSchurComplement) {
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
-    const Factorisation f(mesh_, material_, top);
+    const Factorisation f({mesh_, material_}, top);
     const auto i = interface_unknowns(), m = inner_unknowns(top);
     EXPECT_EQ(f.n_unknowns(), static_cast<std::int64_t>(i.size() + m.size()));
     const Eigen::MatrixXd K = K_;
@@ -82,7 +82,7 @@ TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
   }
   const Eigen::VectorXd u_i = Eigen::VectorXd::NullaryExpr(n_interface_, [&] { return random(); });
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
-    const Factorisation f(mesh_, material_, top);
+    const Factorisation f({mesh_, material_}, top);
     const auto load = f.load(edge);
     const solid::Field u = f.displacement(load, u_i);
     const Eigen::VectorXd force = K_ * flat(u);
@@ -107,7 +107,7 @@ TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
 TEST(Factorisation, OfSeveralThreadsAtOnceIsThatOfOne) {
   const auto mesh = test::make_plate(0.2, 0.1, 2e-3, Corner::relief);
   const auto solved = [&] {
-    const Factorisation f(mesh, {}, TopConstraint::both);
+    const Factorisation f({mesh, {}}, TopConstraint::both);
     const std::vector<double> sheared(mesh.far_edge_nodes.size(), 1e-4);
     const Eigen::VectorXd force = f.load({sheared, sheared}).g_N;
     return std::pair<Eigen::MatrixXd, Eigen::VectorXd>(f.condensed_stiffness(), force);

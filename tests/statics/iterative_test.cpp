@@ -252,8 +252,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(ByMultigrid, EquilibriumIsThatOfTheFactorisation) {
   const Bodies bodies(GetParam(), 2e-3);
   const auto top = uneven_top(bodies.plate);
-  const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base);
-  const auto iterative = make_plate_solver(bodies.plate, pmma, StaticSolver::iterative, bodies.base);
+  const auto direct = make_plate_solver({bodies.plate, pmma}, StaticSolver::direct, bodies.base);
+  const auto iterative = make_plate_solver({bodies.plate, pmma}, StaticSolver::iterative, bodies.base);
   EXPECT_TRUE(iterative->iterates());
   EXPECT_EQ(direct->n_unknowns(), iterative->n_unknowns());
   // The energy norm bounds the error of a node's displacement and force only up to the number of nodes.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary/boundary.hpp"
 #include "statics/equilibria.hpp"
 
 namespace slipfront::statics {
@@ -31,9 +32,17 @@ const Sample samples[] = {{"Springs", 2e9, 5e9},
 mesh::Plate plate_of(const Sample& sample) {
   mesh::Plate plate{.width_m = 0.08, .height_m = 0.04, .element_size_m = 2e-3, .corner = mesh::Corner::none};
   plate.coarsenings = sample.coarsenings;
-  if (sample.is_pushed) plate.pusher = {4e-3, 20e-3};
-  plate.machine = {sample.shear_Pa, sample.normal_Pa};
   return plate;
+}
+
+boundary::Machine machine_of(const Sample& sample) {
+  const boundary::Pusher pusher{4e-3, 20e-3};
+  return {sample.shear_Pa, sample.normal_Pa, sample.is_pushed ? pusher : boundary::Pusher{}};
+}
+
+Statics statics_of(const mesh::Mesh& mesh, const boundary::Machine& machine, const Loading& loading,
+                   const solid::Material& material = pmma, const std::optional<ElasticBody>& base = {}) {
+  return {{mesh, material, machine}, base, loading, std::vector<double>(mesh.interface_nodes.size(), 0.5)};
 }
 
 Loading loading() {
@@ -54,8 +63,9 @@ std::vector<double> lengths_m(const std::vector<mesh::Node>& nodes, At&& at_m) {
 class AMachine : public ::testing::TestWithParam<Sample> {
  protected:
   mesh::Mesh mesh_ = mesh::make_plate(plate_of(GetParam()));
-  solid::Material material_;
-  Statics statics_{mesh_, material_, loading(), 0.5};
+  solid::Material material_ = pmma;
+  boundary::Boundary boundary_ = boundary::make_boundary(mesh_, machine_of(GetParam()));
+  Statics statics_ = statics_of(mesh_, machine_of(GetParam()), loading(), material_);
 
   Eigen::VectorXd forces(const Equilibrium& e) const {
     return test::assembled_stiffness(mesh_, material_) * test::flat(e.u_m);
@@ -87,7 +97,7 @@ TEST_P(AMachine, PullsEachNodeByItsShareOfTheSprings) {
     expect_grip(2 * top[k], of_top_m[k] / 0.08 * shear_Pa, e.shear_m);
     now(2 * top[k]) = 0;
   }
-  const auto& pushed = mesh_.pushed_nodes;
+  const auto& pushed = boundary_.pushed;
   ASSERT_EQ(pushed.size() > 3, is_pushed);
   const auto of_pushed_m = lengths_m(pushed, [&](mesh::Node n) { return mesh_.y_m[n]; });
   for (std::size_t k = 0; k < pushed.size(); ++k) {
@@ -116,7 +126,7 @@ TEST_P(AMachine, UnderAConstantForceTheInterfaceBearsIt) {
 }
 
 TEST_P(AMachine, DoesTheWorkThatPlateAndMachineStore) {
-  const auto op = solid::make_operator(mesh_, material_);
+  const auto op = solid::make_operator(mesh_, material_, boundary_.edge_sets());
   const auto stored = [&](const Equilibrium& e) {
     return solid::strain_energy_J_per_m(op, e.u_m) + statics_.machine_energy_J_per_m(e);
   };
@@ -141,23 +151,19 @@ TEST_P(AMachine, MovesThePlateAsItsDisplacementGrows) {
 
 TEST(Machine, PullsAStiffBlockByItsOwnStiffnessAlone) {
   const solid::Material stiff{.youngs_modulus_Pa = 1e16};
-  auto plate = plate_of(samples[0]);
-  plate.machine = {3e9, rigid};
-  const auto mesh = mesh::make_plate(plate);
+  const auto mesh = mesh::make_plate(plate_of(samples[0]));
   auto pressed = loading();
   pressed.tilt_left_m = pressed.tilt_right_m = 1e-12;
-  const Statics statics(mesh, stiff, pressed, 0.5);
+  const auto statics = statics_of(mesh, {3e9, rigid}, pressed, stiff);
   const auto tributary_m = mesh::tributary_lengths_m(mesh);
   const auto e = statics.shear_by(1e-6);
   EXPECT_NEAR(contact_force(e, tributary_m).shear_N_per_m, 3e9 * 1e-6, 1e-5 * 3e3);
 }
 
 TEST(Machine, BecomesRigidAsItsStiffnessGrows) {
-  auto plate = plate_of(samples[0]);
+  const auto mesh = mesh::make_plate(plate_of(samples[0]));
   const auto shear_at = [&](double stiffness_Pa) {
-    plate.machine = {stiffness_Pa, stiffness_Pa};
-    const auto mesh = mesh::make_plate(plate);
-    return Statics(mesh, {}, loading(), 0.5).shear_to(0.98).shear_m;
+    return statics_of(mesh, {stiffness_Pa, stiffness_Pa}, loading()).shear_to(0.98).shear_m;
   };
   const double at_rigid_m = shear_at(rigid);
   const double off = shear_at(1e13) - at_rigid_m, less_off = shear_at(1e14) - at_rigid_m;
@@ -167,11 +173,7 @@ TEST(Machine, BecomesRigidAsItsStiffnessGrows) {
 
 TEST(Machine, KeepsTheForceOfABodyOnABase) {
   const auto mesh = mesh::make_plate(plate_of(samples[2]));
-  auto below = plate_of(samples[2]);
-  below.machine = {};
-  const auto base = mesh::make_plate(below);
-  const Statics statics({mesh, pmma}, ElasticBody{base, gel}, loading(),
-                        std::vector<double>(mesh.interface_nodes.size(), 0.5));
+  const auto statics = statics_of(mesh, machine_of(samples[2]), loading(), pmma, ElasticBody{mesh, gel});
   const auto tributary_m = mesh::tributary_lengths_m(mesh);
   const auto force = [&](const Equilibrium& e) { return contact_force(e, tributary_m); };
   const auto e = statics.shear_to(0.98);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "boundary/machine.hpp"
 #include "equilibria.hpp"
 #include "support/files.hpp"
 #include "support/interruption.hpp"
@@ -136,15 +137,17 @@ TEST(Statics, SlipOfPartOfAPlateLowersItsShearAndRaisesThatBeside) {
 }
 
 TEST(Statics, APushedPlateBearsAtItsInterfaceWhatThePusherGives) {
-  mesh::Plate plate{.element_size_m = 4e-3, .corner = mesh::Corner::none, .pusher = {8e-3, 24e-3}};
-  const auto mesh = mesh::make_plate(plate);
-  ASSERT_EQ(mesh.pushed_nodes.size(), 5U);
+  const auto mesh = mesh::make_plate({.element_size_m = 4e-3, .corner = mesh::Corner::none});
+  const boundary::Machine machine{.pusher = {8e-3, 24e-3}};
+  const auto pushed = boundary::pushed_nodes(mesh, machine.pusher);
+  ASSERT_EQ(pushed.size(), 5U);
   Loading loading;
   loading.tilt_left_m = loading.tilt_right_m = 1e-4;
   const solid::Material material;
-  Statics statics(mesh, material, loading, 0.5);
+  const Statics statics({mesh, material, machine}, {}, loading,
+                        std::vector<double>(mesh.interface_nodes.size(), 0.5));
   const auto e = statics.shear_to(0.999);
-  const auto rows = solid::assemble_rows(mesh, material, std::vector<mesh::Node>(mesh.pushed_nodes));
+  const auto rows = solid::assemble_rows(mesh, material, pushed);
   double pushed_N_per_m = 0, largest_N_per_m = 0;
   solid::for_each_row_product(rows, e.u_m, [&](std::size_t, double x, double) { pushed_N_per_m += x; });
   const auto top = solid::assemble_rows(mesh, material, std::vector<mesh::Node>(mesh.far_edge_nodes));
@@ -155,7 +158,7 @@ TEST(Statics, APushedPlateBearsAtItsInterfaceWhatThePusherGives) {
   EXPECT_GT(largest_N_per_m, 0);
   const auto force = contact_force(e, mesh::tributary_lengths_m(mesh));
   EXPECT_NEAR(force.shear_N_per_m, pushed_N_per_m, 1e-9 * pushed_N_per_m);
-  for (const auto n : mesh.pushed_nodes)
+  for (const auto n : pushed)
     EXPECT_NEAR(e.u_m.x[n] - statics.tilted().u_m.x[n], e.shear_m, 1e-12 * e.shear_m);
   for (const auto n : mesh.far_edge_nodes) EXPECT_DOUBLE_EQ(e.u_m.y[n], -1e-4);
   EXPECT_LT(e.peak_x_m, 0.05);  // slip begins near the pusher

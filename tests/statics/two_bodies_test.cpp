@@ -20,7 +20,7 @@ using test::max_abs;
 
 std::shared_ptr<const Factorisation> factorised(const mesh::Mesh& mesh, const solid::Material& material,
                                                 TopConstraint top = TopConstraint::both) {
-  return std::make_shared<Factorisation>(mesh, material, top);
+  return std::make_shared<Factorisation>(ElasticBody{mesh, material}, top);
 }
 
 TEST(CondensedPair, CompliancesOfUnlikeBodiesAdd) {
@@ -75,9 +75,10 @@ TEST(TwoBodies, BondedAreOneOfTheirHeight) {
     return load_case->displacement(shear);
   };
   for (const double shear : {0.0, 1e-4}) {
-    const auto one = displacement(*make_plate_solver(whole, pmma, StaticSolver::direct), whole, shear).above;
+    const auto one =
+        displacement(*make_plate_solver({whole, pmma}, StaticSolver::direct), whole, shear).above;
     const auto two = displacement(
-        *make_plate_solver(plate, pmma, StaticSolver::automatic, ElasticBody{base, pmma}), plate, shear);
+        *make_plate_solver({plate, pmma}, StaticSolver::automatic, ElasticBody{base, pmma}), plate, shear);
     const double tolerance = 1e-9 * max_abs(one);
     const int rows = base.grid.rows;
     for (int j = 0; j <= whole.grid.rows; ++j)
@@ -230,7 +231,7 @@ TEST(TwoBodies, NeedABaseThatIsHeldAndFacesThePlate) {
                                       .top = mesh::Top::free});
   const auto shorter = test::make_plate(0.019, 0.01, 1e-3, Corner::none);
   const auto solve = [&](const mesh::Mesh& base) {
-    make_plate_solver(mesh, pmma, StaticSolver::direct, ElasticBody{base, pmma});
+    make_plate_solver({mesh, pmma}, StaticSolver::direct, ElasticBody{base, pmma});
   };
   EXPECT_DEATH(solve(free), "nothing holds");
   EXPECT_DEATH(solve(shorter), "different nodes");
