@@ -56,10 +56,12 @@ auto members(const Struct& s) {
   }
 }
 auto members(const mesh::Plate& plate) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, pusher, machine] = plate;
-  const auto& [from_m, to_m] = pusher;
-  const auto& [shear_Pa, normal_Pa] = machine;
-  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l, from_m, to_m, shear_Pa, normal_Pa);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = plate;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
+}
+auto members(const boundary::Machine& machine) {
+  const auto& [shear_Pa, normal_Pa, pusher] = machine;
+  return std::tuple(shear_Pa, normal_Pa, pusher.from_m, pusher.to_m);
 }
 auto members(const Base& base) {
   const auto& [kind, plate, material] = base;
@@ -87,14 +89,14 @@ auto members(const interface::FrictionLaw& friction) {
   });
 }
 auto members(const Case& c) {
-  const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, tip,
+  const auto& [title, plate, material, machine, base, loading, prestress, friction, friction_along_x, tip,
                regularisation, contact, event, trigger, nucleation, sequence, time, fronts, output, probes] =
       c;
-  return std::tuple(title, members(plate), members<5>(material), members(base), members<13>(loading),
-                    members(prestress), members(friction), members(friction_along_x), tip,
-                    members<4>(regularisation), contact, event, members<6>(trigger), members<8>(nucleation),
-                    members<7>(sequence), members<9>(time), members<7>(fronts), members<5>(output),
-                    members<4>(probes));
+  return std::tuple(title, members(plate), members<5>(material), members(machine), members(base),
+                    members<13>(loading), members(prestress), members(friction), members(friction_along_x),
+                    tip, members<4>(regularisation), contact, event, members<6>(trigger),
+                    members<8>(nucleation), members<7>(sequence), members<9>(time), members<7>(fronts),
+                    members<5>(output), members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
