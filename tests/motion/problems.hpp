@@ -166,7 +166,8 @@ inline void pushed(Problem& p) {
 }
 /// By springs in all that a machine may hold.
 inline void gripped(Problem& p) {
-  p.machine = {1e12, 2e11};
+  p.machine.shear_stiffness_Pa = 1e12;
+  p.machine.normal_stiffness_Pa = 2e11;
   p.is_strained = true;
 }
 inline void under_dead_load(Problem& p) {

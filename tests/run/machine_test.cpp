@@ -29,8 +29,7 @@ input::Case pushed_block(int max_events) {
   test::law(config).mu_s = 0.7;
   test::law(config).mu_k = 0.5;
   config.plate.corner = mesh::Corner::none;
-  config.machine.pusher = {8e-3, 16e-3};
-  config.machine = {2e9, 0};
+  config.machine = {2e9, 0, {8e-3, 16e-3}};
   return config;
 }
 
@@ -79,7 +78,6 @@ TEST(SequenceOnAMachine, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
 
 TEST(SequenceOnAMachine, OfATopEdgeKeepsItsBooks) {
   auto config = pushed_block(4);
-  config.machine.pusher = {};
   config.machine = {1e10, 2e10};
   Sequence sequence(config, test::go_on);
   run_all(sequence, config);
