@@ -21,8 +21,7 @@ Boundary make_boundary(const mesh::Mesh& mesh, const Machine& machine) {
   all.pushed = pushed_nodes(mesh, machine.pusher);
   const auto shares = shares_of_pushed(mesh, all.pushed);
   for (std::size_t k = 0; k < all.pushed.size(); ++k)
-    all.nodes.push_back(
-        {.node = all.pushed[k], .spring_x_N_per_m = shares[k] * machine.shear_stiffness_Pa});
+    all.nodes.push_back({.node = all.pushed[k], .spring_x_N_per_m = shares[k] * machine.shear_stiffness_Pa});
   const auto highest = all.nodes.size() - 1;
   for (std::size_t k = 0; k < mesh.far_edge_nodes.size(); ++k) {
     const auto n = mesh.far_edge_nodes[k];
