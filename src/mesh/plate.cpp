@@ -419,8 +419,7 @@ class Maker {
 
   void name_left() {
     for (const auto& block : blocks_)
-      for (int j = 0; block.has(0) && j <= block.grid.rows; ++j)
-        mesh_.left_nodes.push_back(block.node(0, j));
+      for (int j = 0; block.has(0) && j <= block.grid.rows; ++j) mesh_.left_nodes.push_back(block.node(0, j));
   }
 
   /// Every edge between two nodes gives half of its length to each.
