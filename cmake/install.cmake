@@ -65,8 +65,8 @@ if(SLIPFRONT_PYTHON)
   endforeach()
 endif()
 
-foreach(module base threads processes files record mesh solid boundary interface stability fronts fracture statics motion input
-        results run)
+foreach(module base threads processes files record mesh solid boundary interface stability fronts fracture statics motion
+        input results run)
   install(DIRECTORY src/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipfront COMPONENT development
           FILES_MATCHING PATTERN *.hpp)
 endforeach()

@@ -15,6 +15,10 @@ Dashpot make_dashpot(const EdgeNode& edge, const solid::Material& material, doub
           spring_y == infinity ? infinity : factor * (c_S * side_m + c_L * top_m)};
 }
 
+double dashpot_work(double d_x, double d_y, double mass_kg, double mean_x_m_per_s, double mean_y_m_per_s) {
+  return -2 * mass_kg * (d_x * mean_x_m_per_s * mean_x_m_per_s + d_y * mean_y_m_per_s * mean_y_m_per_s);
+}
+
 namespace {
 
 /// Without what a machine pulls.
@@ -24,7 +28,7 @@ solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, sol
   const double d_x = holds_x ? 0 : dashpot.d_x, d_y = holds_y ? 0 : dashpot.d_y;
   const double mean_x = 0.5 * (before.x + trial.x) / (1 + d_x);
   const double mean_y = 0.5 * (before.y + trial.y) / (1 + d_y);
-  works.boundary_work -= 2 * mass_kg * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
+  works.boundary_work += dashpot_work(d_x, d_y, mass_kg, mean_x, mean_y);
   if (holds_x) works.far_edge_work += mass_kg * (before.x - trial.x) * before.x;
   if (holds_y) works.far_edge_work += mass_kg * (before.y - trial.y) * before.y;
   return {holds_x ? before.x : trial.x - 2 * d_x * mean_x, holds_y ? before.y : trial.y - 2 * d_y * mean_y};

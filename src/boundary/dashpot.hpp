@@ -12,9 +12,9 @@
 
 namespace slipfront::boundary {
 
-/// An edge node that moves by itself: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt
-/// the step with which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c. Infinite: the node
-/// keeps its velocity.
+/// Dashpots along x and y at an edge node of mass m, integrated implicitly: with the damping coefficient c
+/// and the node's time step dt, d = c dt/(2 m) and v+ = ((1 - d) v- - dt a)/(1 + d), which is stable for any
+/// c. An infinite d prescribes the node's velocity.
 struct Dashpot {
   std::size_t at = 0;  ///< row of the level, shared node, or interface node
   mesh::Node node = 0;
@@ -25,6 +25,9 @@ struct Dashpot {
 /// The dashpot of an edge node that moves with steps step_s: c_L rho along the normal, c_S rho across it, per
 /// length of edge (Lysmer and Kuhlemeyer 1969); at is 0.
 Dashpot make_dashpot(const EdgeNode& edge, const solid::Material& material, double mass_kg, double step_s);
+
+/// Work of a node's dashpots in a step at a mean velocity, J per unit thickness; never positive.
+double dashpot_work(double d_x, double d_y, double mass_kg, double mean_x_m_per_s, double mean_y_m_per_s);
 
 /// Velocity of a dashpot's node at u_m after a kick that alone would lead from `before` to `trial`; the works
 /// of the dashpot and of what springs the node are added to `works`.

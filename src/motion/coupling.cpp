@@ -10,14 +10,6 @@
 
 namespace slipfront::motion {
 
-namespace {
-
-double dashpot_work(const boundary::Dashpot& dashpot, double mass_kg, double mean_x, double mean_y) {
-  return -2 * mass_kg * (dashpot.d_x * mean_x * mean_x + dashpot.d_y * mean_y * mean_y);
-}
-
-}  // namespace
-
 Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBody> bodies)
     : bodies_(std::move(bodies)),
       contact_(contact),
@@ -353,8 +345,9 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
     for (const auto& dashpot : body.side->dashpots) {
       const auto i = dashpot.at;
       if (!is_own(i)) continue;
-      works.boundary_work += dashpot_work(dashpot, body.side->mass_kg[i], 0.5 * (v_x[i] + v_x_before[i]),
-                                          0.5 * (v_y[i] + v_y_before[i]));
+      works.boundary_work +=
+          boundary::dashpot_work(dashpot.d_x, dashpot.d_y, body.side->mass_kg[i],
+                                 0.5 * (v_x[i] + v_x_before[i]), 0.5 * (v_y[i] + v_y_before[i]));
     }
   };
   if (sides_.empty())

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <vector>
 
-#include "base/interruption.hpp"
+#include "base/error.hpp"
 #include "run/cases.hpp"
 #include "support/files.hpp"
 
