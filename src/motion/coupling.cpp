@@ -365,6 +365,18 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
           0.5 * impulse_s * loads_.trigger_force_N_per_m[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
+record::History Coupling::interface_row(double time_s) const {
+  record::History row;
+  append_law_states(row);
+  append_sample(time_s, row);
+  for (auto* values : members_of(row)) {
+    if (values == &row.time_s) continue;
+    values->erase(values->begin() + own_end_, values->end());
+    values->erase(values->begin(), values->begin() + own_begin_);
+  }
+  return row;
+}
+
 static void append(std::vector<double>& to, const std::vector<double>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }

@@ -97,6 +97,8 @@ class Coupling {
   SlipRates slip_rates() const;
   /// Breakdown of own nodes.
   record::Breakdown breakdown() const;
+  /// State of own nodes between two steps, see TimeStepper::interface_row.
+  record::History interface_row(double time_s) const;
   /// Acceleration of a node whose tractions are not balanced.
   double largest_acceleration_m_per_s2() const;
 

@@ -437,6 +437,17 @@ record::Breakdown DistributedStepper::breakdown() const {
   return all;
 }
 
+record::History DistributedStepper::interface_row() const {
+  halo_->finish();
+  auto row = stepper_->interface_row();
+  for (auto* values : members_of(row)) {
+    if (values == &row.time_s) continue;
+    const auto of_ranks = processes_.all_gather_value(std::exchange(*values, {}));
+    for (const auto& own : of_ranks) values->insert(values->end(), own.begin(), own.end());
+  }
+  return row;
+}
+
 std::vector<SubdomainCost> DistributedStepper::costs() const {
   const auto& now = processes_.counters();
   return processes_.all_gather_value(

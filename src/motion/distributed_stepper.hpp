@@ -122,6 +122,7 @@ class DistributedStepper final : public TimeStepper {
   bool is_interrupted() const override { return is_interrupted_; }
   record::Energies energies() override;
   record::Breakdown breakdown() const override;
+  record::History interface_row() const override;
   double kinetic_energy_J_per_m() const override;
   double mass_kg_per_m() const override;
   double energy_of_tractions_J_per_m() const override;

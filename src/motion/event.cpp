@@ -45,8 +45,7 @@ Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, E
   const auto start = stepper_.energies();
   Observers list;
   list.push_back(std::make_unique<Onsets>(state.tractions.x_m, halo));
-  list.push_back(
-      std::make_unique<HistoryRows>(sampling.history_interval_s, state.tractions.x_m.size(), *output));
+  list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, *output));
   list.push_back(std::make_unique<TipSlips>(state, sampling.history_interval_s));
   if (!stepper_.probes().empty())
     list.push_back(
@@ -85,7 +84,7 @@ Event EventRun::run() {
   event.record = record();
   event.breakdown = stepper_.breakdown();
   event.tip_slip = tip_slip();
-  event.last_row = run_.get<HistoryRows>().last();
+  event.interface_at_end = stepper_.interface_row();
   event.energies = run_.get<EnergyRows>().take_rows();
   if (kept_) {
     event.history = std::move(kept_->history);

@@ -43,7 +43,7 @@ struct Event {
   record::SlipRecord record;
   record::Breakdown breakdown;
   record::TipSlip tip_slip;
-  record::History last_row;                ///< of the history, without places
+  record::History interface_at_end;        ///< see TimeStepper::interface_row
   record::History history;                 ///< without an output
   std::vector<Snapshot> snapshots;         ///< without an output
   record::ProbeRecord probes;              ///< without an output

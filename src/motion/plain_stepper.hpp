@@ -47,6 +47,7 @@ class PlainStepper : public TimeStepper {
   const interface::Interface& interface_state() const { return coupling_.state(); }
   record::Energies energies() override;
   record::Breakdown breakdown() const override { return coupling_.breakdown(); }
+  record::History interface_row() const override { return coupling_.interface_row(time_s()); }
   double kinetic_energy_J_per_m() const override;
   double mass_kg_per_m() const override;
   double energy_of_tractions_J_per_m() const override;

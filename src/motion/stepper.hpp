@@ -135,6 +135,7 @@ class Stepper : public TimeStepper {
   double energy_of_tractions_J_per_m() const override;
   record::Energies energies() override;
   record::Breakdown breakdown() const override { return coupling_.breakdown(); }
+  record::History interface_row() const override { return coupling_.interface_row(time_s()); }
 
   int n_snapshot_chunks() const override { return 1; }
   std::size_t snapshot_chunk_bytes() const override;

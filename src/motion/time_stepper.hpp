@@ -112,6 +112,9 @@ class TimeStepper {
   virtual double kinetic_energy_J_per_m() const = 0;
   /// How friction has broken down so far, at all interface nodes.
   virtual record::Breakdown breakdown() const = 0;
+  /// State of all interface nodes between two steps, one row without places: slip and the law's states of
+  /// now, slip rates and tractions of the last contact update.
+  virtual record::History interface_row() const = 0;
   virtual double mass_kg_per_m() const = 0;
   /// Kinetic energy of bodies that move as fast as an interface node would after one step in which its
   /// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the bodies' area.

@@ -416,18 +416,16 @@ void Sequence::record_event(const Result& result) {
   const auto& event = result.event;
   SLIPFRONT_ASSERT(event.end == motion::EventEnd::quiet, "the event has not come to rest");
   const auto begins = loading_.back();
-  const auto& row_at_end = event.last_row;
-  const record::StaticState tractions_at_end{event.record.x_m, row_at_end.t_Pa, row_at_end.p_Pa};
+  const auto& at_end = event.interface_at_end;
+  const record::StaticState tractions_at_end{event.record.x_m, at_end.t_Pa, at_end.p_Pa};
   const auto u = relative(initial_, initial_.supercritical);
   const double shear_m = begins.shear_m + top_speed_in_event_m_per_s(config_) * event.time_s;
-  const double since_row_s = event.time_s - row_at_end.time_s.front();
   rest_.contact.clear();
   rest_.u_x_m.clear();
   double mean_m = 0;
   for (std::size_t k = 0; k < u.x_m.size(); ++k) {
-    rest_.contact.push_back(row_at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
-    rest_.u_x_m.push_back(u.x_m[k] + row_at_end.slip_m[k]);
-    if (slow_) rest_.u_x_m.back() += since_row_s * row_at_end.slip_rate_m_per_s[k];
+    rest_.contact.push_back(at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
+    rest_.u_x_m.push_back(u.x_m[k] + at_end.slip_m[k]);
     mean_m += rest_.u_x_m.back() / static_cast<double>(u.x_m.size());
   }
   for (double& u_x_m : rest_.u_x_m) u_x_m -= mean_m;
@@ -444,7 +442,7 @@ void Sequence::record_event(const Result& result) {
   add_event_works(last, ends.energies);
   loading_.push_back(ends);
 
-  if (slow_) rest_.psi = row_at_end.law_states.front();
+  if (slow_) rest_.psi = at_end.law_states.front();
   if (!rest_.rests_since_s.empty())
     for (const auto& onset : event.record.onsets) rest_.rests_since_s[onset.node] = rest_.time_s;
   equilibrate();
@@ -452,10 +450,10 @@ void Sequence::record_event(const Result& result) {
   auto rests = row(LoadingPhase::at_rest, rest_.time_s, shear_m, at_rest_.tractions);
   add_state(at_rest_, rests);
   rests.wave_loss_J_per_m += ends.energies.stored() - rests.energies.stored();
-  for (std::size_t k = 0; slow_ && k < row_at_end.slip_rate_m_per_s.size(); ++k)
-    if (row_at_end.p_Pa[k] > 0)
+  for (std::size_t k = 0; slow_ && k < at_end.slip_rate_m_per_s.size(); ++k)
+    if (at_end.p_Pa[k] > 0)
       rests.fastest_slip_rate_m_per_s =
-          std::max(rests.fastest_slip_rate_m_per_s, std::abs(row_at_end.slip_rate_m_per_s[k]));
+          std::max(rests.fastest_slip_rate_m_per_s, std::abs(at_end.slip_rate_m_per_s[k]));
   loading_.push_back(rests);
   add_event(result, begins, rests, at_rest_.tractions);
 }
@@ -506,7 +504,7 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
       if (is_inside(static_cast<std::int32_t>(k))) e.is_global = 0;
       continue;
     }
-    const double a = initial_.tributary_m[k], slip_m = result.event.last_row.slip_m[k];
+    const double a = initial_.tributary_m[k], slip_m = result.event.interface_at_end.slip_m[k];
     e.from_x_m = std::isnan(e.from_x_m) ? record.x_m[k] : e.from_x_m;
     e.to_x_m = record.x_m[k];
     e.length_m += a;

@@ -173,7 +173,7 @@ bool SequenceSession::run_event() {
 
 UserError SequenceSession::does_not_rest(const std::string& part, const Result& result) const {
   const auto what = fmt::format("{} has not come to rest: {}", part, end_of_event(result));
-  const auto& row = result.event.last_row;
+  const auto& row = result.event.interface_at_end;
   const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
   if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
     return config_.machine.is_rigid()

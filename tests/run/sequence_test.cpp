@@ -173,7 +173,7 @@ TEST(Sequence, RowsOfEventsTellWhatSlipped) {
     double potency_m2 = 0, length_m = 0;
     for (const auto node : nodes) {
       const double a = initial->tributary_m[node];
-      potency_m2 += result.event.last_row.slip_m[node] * a;
+      potency_m2 += result.event.interface_at_end.slip_m[node] * a;
       length_m += a;
     }
     EXPECT_NEAR(e.potency_m2, potency_m2, 1e-12 * potency_m2);
@@ -252,7 +252,7 @@ TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
     const auto* initial = sequence.next();
     const auto result = run_from(config, *initial, test::go_on);
     sequence.record_event(result);
-    const auto& slip_m = result.event.last_row.slip_m;
+    const auto& slip_m = result.event.interface_at_end.slip_m;
     const auto& t_Pa = initial->subcritical.tractions.t_s_Pa;
     const double most_m = *std::ranges::max_element(slip_m), most_Pa = *std::ranges::max_element(t_Pa);
     // Rounding grows some hundredfold from event to event.
