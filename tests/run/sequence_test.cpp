@@ -114,6 +114,24 @@ TEST(Sequence, EquilibriumCarriesTheTractionsWithWhichADampedEventComesToRest) {
   EXPECT_LT(off_before, 1e-3);
 }
 
+TEST(Sequence, IsTheSameWhateverRowsAreWritten) {
+  auto config = sequence_case(6, 1.0);
+  std::vector<std::vector<record::SequenceEvent>> events;
+  for (const double interval_s : {0.5e-6, 50e-6}) {
+    config.output.history_interval_s = interval_s;
+    Sequence sequence(config, test::go_on);
+    while (sequence.end().empty()) run_next(sequence, config);
+    events.push_back(sequence.events());
+  }
+  ASSERT_EQ(events[0].size(), events[1].size());
+  for (std::size_t k = 0; k < events[0].size(); ++k) {
+    EXPECT_EQ(events[0][k].shear_m, events[1][k].shear_m) << k;
+    EXPECT_EQ(events[0][k].potency_m2, events[1][k].potency_m2) << k;
+    EXPECT_EQ(events[0][k].shear_force_N_per_m, events[1][k].shear_force_N_per_m) << k;
+    EXPECT_EQ(events[0][k].friction_after, events[1][k].friction_after) << k;
+  }
+}
+
 TEST(Sequence, EventsBeginWhereInsideOneNodeReachesTheStrengthAndTheOthersStick) {
   const auto config = sequence_case(12, 1.0);
   Sequence sequence(config, test::go_on);
