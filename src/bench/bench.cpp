@@ -123,13 +123,16 @@ double resident_bytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+/// The plate of Kammer et al. (2012).
 mesh::Plate plate_of(int columns) {
-  mesh::Plate plate;
-  plate.element_size_m = plate.width_m / columns;
-  return plate;
+  constexpr double width_m = 0.2, height_m = 0.1;
+  return {.width_m = width_m,
+          .height_m = height_m,
+          .element_size_m = width_m / columns,
+          .corner = mesh::Corner::relief};
 }
 
-/// A plate of the paper's material pressed on the plane, that begins to slip on its left half.
+/// The plate pressed on the plane, that begins to slip on its left half.
 class SlippingPlate {
  public:
   SlippingPlate(const mesh::Mesh& mesh, const motion::TimeStepping& time, const motion::Execution& execution)
@@ -197,11 +200,10 @@ mesh::Mesh general_mesh(int columns, double moved) {
   return mesh;
 }
 
-PaperRun paper_run(int columns, int threads) {
+EventRun measure_event(int columns, int threads) {
   input::Case config;
-  config.plate = plate_of(columns);
-  config.event = interface::EventKind::left;
-  PaperRun result{columns, columns / 2, threads};
+  config.plate.element_size_m = config.plate.width_m / columns;
+  EventRun result{columns, columns / 2, threads};
   const auto monitor = [](std::int64_t, std::int64_t) { return true; };
   auto start = Clock::now();
   const auto initial = run::make_initial_state(config, monitor);
@@ -227,8 +229,7 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const auto mesh = mesh::make_plate(plate);
   const auto start = Clock::now();
   const auto processor_start = std::clock();
-  statics::Loading loading;
-  loading.solver = solver;
+  const statics::Loading loading{.tilt_left_m = 0.37e-3, .tilt_right_m = 0.037e-3, .solver = solver};
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
   const solid::Material material;
@@ -286,8 +287,8 @@ Results measure(const Options& options, const std::function<void(const std::stri
   add_mesh("squares without a grid", [] { return general_mesh(300, 0); });
   add_mesh("all cells different", [] { return general_mesh(300, 0.2); });
   for (const int t : threads) {
-    progress(fmt::format("the paper's left event, threads: {}", t));
-    results.paper_runs.push_back(paper_run(300, t));
+    progress(fmt::format("an event, threads: {}", t));
+    results.events.push_back(measure_event(300, t));
   }
   return results;
 }

@@ -33,15 +33,16 @@ struct Rate {
   double bytes_per_node = 0;
 };
 
-/// One of the paper's events from the tilt to its fronts, nothing written.
-struct PaperRun {
+/// The default case from normal loading to its fronts, nothing written.
+struct EventRun {
   int columns = 0, rows = 0;
   int threads = 1;
   double statics_s = 0, event_s = 0;
   double node_updates_per_s = 0;  ///< of the event
 };
 
-/// The paper's plate, tilted and sheared to the critical, the common and the spontaneous state.
+/// The plate of Kammer et al. (2012), tilted and sheared to the critical, the subcritical and the
+/// supercritical state.
 struct StaticsRun {
   int columns = 0, rows = 0;
   std::string solver;
@@ -59,7 +60,7 @@ struct Results {
   double bandwidth_all_threads_bytes_per_s = 0;
   double stencil_alone_per_s = 0;  ///< of one thread
   std::vector<Rate> rates;
-  std::vector<PaperRun> paper_runs;
+  std::vector<EventRun> events;
 };
 
 /// Measures all of it; medians of 5. `progress` receives the name of what comes next.

@@ -39,7 +39,7 @@ void print_json(const nlohmann::ordered_json& measured) {
 }
 
 void print_json(const bench::Results& results) {
-  nlohmann::ordered_json rates, paper_runs;
+  nlohmann::ordered_json rates, events;
   for (const auto& r : results.rates)
     rates.push_back({{"path", r.path},
                      {"columns", r.columns},
@@ -50,20 +50,20 @@ void print_json(const bench::Results& results) {
                      {"bound_per_s", r.bound_per_s},
                      {"fraction_of_bound", r.node_updates_per_s / r.bound_per_s},
                      {"bytes_per_node", r.bytes_per_node}});
-  for (const auto& r : results.paper_runs)
-    paper_runs.push_back({{"columns", r.columns},
-                          {"rows", r.rows},
-                          {"threads", r.threads},
-                          {"statics_s", r.statics_s},
-                          {"event_s", r.event_s},
-                          {"node_updates_per_s", r.node_updates_per_s}});
+  for (const auto& r : results.events)
+    events.push_back({{"columns", r.columns},
+                      {"rows", r.rows},
+                      {"threads", r.threads},
+                      {"statics_s", r.statics_s},
+                      {"event_s", r.event_s},
+                      {"node_updates_per_s", r.node_updates_per_s}});
   const nlohmann::ordered_json measured = {
       {"compiler", compiler()},
       {"bandwidth_bytes_per_s", results.bandwidth_bytes_per_s},
       {"bandwidth_all_threads_bytes_per_s", results.bandwidth_all_threads_bytes_per_s},
       {"stencil_alone_per_s", results.stencil_alone_per_s},
       {"rates", rates},
-      {"paper_runs", paper_runs}};
+      {"events", events}};
   print_json(measured);
 }
 
@@ -84,9 +84,9 @@ void print_table(const bench::Results& results) {
       "\nBound: bandwidth over {:.0f} bytes a node for one step per sweep through memory, else the "
       "stencil alone. Medians of 5.\n\n",
       bench::bytes_per_node_update);
-  for (const auto& r : results.paper_runs)
+  for (const auto& r : results.events)
     print(
-        "the paper's left event, {} x {}, {} thread{}: statics {:.2f} s, event {:.2f} s ({:.0f} "
+        "an event of two bodies, each {} x {}, {} thread{}: statics {:.2f} s, event {:.2f} s ({:.0f} "
         "million node updates/s)\n",
         r.columns, r.rows, r.threads, r.threads > 1 ? "s" : "", r.statics_s, r.event_s,
         r.node_updates_per_s * 1e-6);

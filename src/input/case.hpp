@@ -23,14 +23,14 @@ namespace slipfront::input {
 
 /// How fronts are found and measured; see fronts::FrontOptions.
 struct FrontSettings {
-  double l_star_m = 0.67e-3;
+  double l_star_m = 0.335e-3;
   fronts::SpeedInterval speed_interval = fronts::SpeedInterval::centred;
-  double arrest_time_s = 20e-6;
-  double min_length_m = 2e-3;
+  double arrest_time_s = 10e-6;
+  double min_length_m = 1e-3;
   double crack_share = 0.5;
   double pulse_share = 0.2;
   double trigger_margin_m =
-      10e-3;  ///< t_d, p_d are left out within trigger zone or nucleation patch plus this
+      5e-3;  ///< t_d, p_d are left out within trigger zone or nucleation patch plus this
 };
 
 /// What the plate lies on.
@@ -41,7 +41,7 @@ enum class BaseKind {
 
 /// The body below the plate, where there is one; see base_plate and base_material.
 struct Base {
-  BaseKind kind = BaseKind::rigid;
+  BaseKind kind = BaseKind::body;
   mesh::Plate plate;         ///< upside down: its top is the far edge, away from the interface
   solid::Material material;  ///< its plane is the plate's
 };
@@ -86,7 +86,7 @@ struct FrictionAlongX {
   BetweenRows between_rows = BetweenRows::linear;
   std::string random_key = "none";  ///< the parameter that the field multiplies, without "friction."
   double random_share = 0.1;        ///< standard deviation over the value
-  double random_correlation_length_m = 10e-3;
+  double random_correlation_length_m = 5e-3;
   int random_seed = 1;
 
   bool varies() const { return !file.empty() || random_key != "none"; }
@@ -94,12 +94,12 @@ struct FrictionAlongX {
 
 /// What a run writes besides its fronts.
 struct Output {
-  double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
+  double history_interval_s = 0.25e-6;   ///< spacing of the rows of interface.h5
   std::vector<double> snapshot_times_s;  ///< whole-plate fields, written to fields.vtkhdf
   /// Further ones at its multiples, from time 0 on.
   double snapshot_interval_s = infinity;
   bool snapshot_stress = true;       ///< strain and stress of the cells with them
-  double energy_interval_s = 20e-6;  ///< spacing of the rows of energy.csv
+  double energy_interval_s = 10e-6;  ///< spacing of the rows of energy.csv
 };
 
 /// Places at which motion, strain and stress are recorded in probes.h5.
@@ -140,7 +140,7 @@ struct Case {
   std::optional<double> tip_slip_rate_m_per_s;
   interface::Regularisation regularisation;
   interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
-  interface::EventKind event = interface::EventKind::spontaneous;
+  interface::EventKind event = interface::EventKind::nucleation;
   interface::Trigger trigger;
   interface::Nucleation nucleation;
   Sequence sequence;

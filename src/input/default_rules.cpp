@@ -18,15 +18,14 @@ struct Scale {
   std::function<double(const Case&)> of;
 };
 
-/// The multiple is what the member's own default is of the paper's plate, which itself has that default.
+/// The multiple is the member's default over the scale of the default case, which itself has that default.
 DefaultRule multiple_of(const Scale& scale, const std::string& key) {
-  const Case paper;
-  const double of_paper = std::get<double>(entry_of(key).get(paper));
-  const double paper_scale = scale.of(paper);
-  return {key, fmt::format("{:.4g} {}", of_paper / paper_scale, scale.name),
-          [=](const Case& config) -> Value {
+  const Case by_default;
+  const double value = std::get<double>(entry_of(key).get(by_default));
+  const double default_scale = scale.of(by_default);
+  return {key, fmt::format("{:.4g} {}", value / default_scale, scale.name), [=](const Case& config) -> Value {
             const double of_case = scale.of(config);
-            return of_case == paper_scale ? of_paper : of_paper * of_case / paper_scale;
+            return of_case == default_scale ? value : value * of_case / default_scale;
           }};
 }
 
@@ -117,7 +116,16 @@ std::vector<DefaultRule> make_default_rules() {
   const Scale height = {"height_m", [](const Case& c) { return c.plate.height_m; }};
   const Scale base_height = {"base.height_m", [](const Case& c) { return c.base.plate.height_m; }};
   const Scale crossing = {"width_m / c_S", [](const Case& c) { return c.plate.width_m / c_S_m_per_s(c); }};
-  std::vector<DefaultRule> rules = {element_size_rule(width), shear_speed_rule()};
+  // A base is like the plate unless it is said otherwise: no default makes the two sides differ.
+  std::vector<DefaultRule> rules;
+  for (const auto& [of_plate, of_base] : {std::pair{"plate.height_m", "base.height_m"},
+                                          {"plate.sides", "base.sides"},
+                                          {"material.youngs_modulus_Pa", "base.youngs_modulus_Pa"},
+                                          {"material.poissons_ratio", "base.poissons_ratio"},
+                                          {"material.density_kg_per_m3", "base.density_kg_per_m3"}})
+    rules.push_back(same_as(of_plate, of_base));
+  rules.push_back(element_size_rule(width));
+  rules.push_back(shear_speed_rule());
   const auto add = [&](const Scale& scale, std::initializer_list<const char*> keys) {
     for (const char* key : keys) rules.push_back(multiple_of(scale, key));
   };
@@ -132,8 +140,6 @@ std::vector<DefaultRule> make_default_rules() {
   rules.push_back(l_star_rule(width));
   rules.push_back(end_rule(crossing));
   rules.push_back(quiet_time_rule(crossing));
-  // A base is like the plate unless it is said otherwise: no default makes the two sides differ.
-  rules.push_back(same_as("plate.sides", "base.sides"));
   rules.push_back(bottom_rule());
   rules.push_back(same_as("material.stiffness_damping_s", "base.stiffness_damping_s"));
   return rules;

@@ -10,8 +10,8 @@
 
 namespace slipfront::input {
 
-/// How the default of a key follows from plate and material. For the paper's plate it is the
-/// member's own default, to the last bit.
+/// How the default of a key follows from plate and material. For the default case's it is the member's own
+/// default, to the last bit.
 struct DefaultRule {
   std::string key;   ///< dotted
   std::string text;  ///< "0.05 width_m"

@@ -411,8 +411,7 @@ void add_base(Entries& all) {
       all, "base", [](auto& config) -> auto& { return config.base.plate; }, Stage::mesh);
   body.only_with = on_body();
   body.add("height_m", &Plate::height_m, above(0),
-           "depth of the body below, a whole multiple of plate.element_size_m")
-      .has_to_be_set = true;
+           "depth of the body below, a whole multiple of plate.element_size_m");
   body.add("coarsenings", &Plate::coarsenings, between(0, 20),
            "how often its element size doubles away from the interface, see mesh.md");
   body.only_with = base_graded();
@@ -428,15 +427,11 @@ void add_base(Entries& all) {
   Table material(
       all, "base", [](auto& config) -> auto& { return config.base.material; }, Stage::statics);
   material.only_with = on_body();
-  material
-      .add("youngs_modulus_Pa", &Material::youngs_modulus_Pa, above(0),
-           "its Young's modulus; its plane is material.plane")
-      .has_to_be_set = true;
-  material.add("poissons_ratio", &Material::poissons_ratio, strictly_between(-1, 0.5), "its Poisson's ratio")
-      .has_to_be_set = true;
+  material.add("youngs_modulus_Pa", &Material::youngs_modulus_Pa, above(0),
+               "its Young's modulus; its plane is material.plane");
+  material.add("poissons_ratio", &Material::poissons_ratio, strictly_between(-1, 0.5), "its Poisson's ratio");
   material.stage = Stage::motion;
-  material.add("density_kg_per_m3", &Material::density_kg_per_m3, above(0), "its density").has_to_be_set =
-      true;
+  material.add("density_kg_per_m3", &Material::density_kg_per_m3, above(0), "its density");
   material.add("stiffness_damping_s", &Material::stiffness_damping_s, at_least(0), "its Rayleigh damping");
 }
 

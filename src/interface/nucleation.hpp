@@ -26,9 +26,9 @@ enum class NucleationProfile {
 struct Nucleation {
   NucleationForm form = NucleationForm::weakened;
   NucleationProfile profile = NucleationProfile::tapered;
-  double x_m = 0.1;  ///< centre
-  double half_length_m = 10e-3;
-  double taper_m = 5e-3;
+  double x_m = 0.05;  ///< centre
+  double half_length_m = 5e-3;
+  double taper_m = 2.5e-3;
   double overstress_Pa = 1e6;
   double front_speed_m_per_s = 600;
   double weakening_time_s = 1e-6;

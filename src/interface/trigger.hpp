@@ -39,10 +39,10 @@ enum class Ramp {
 /// zone as a whole is loaded, +x for none; where it would lower t_s it is left out.
 struct Trigger {
   TriggerForm form = TriggerForm::added;
-  double zone_m = 10e-3;  ///< measured inward from the outermost node in contact
-  double amount = 5;      ///< see TriggerForm
+  double zone_m = 5e-3;  ///< measured inward from the outermost node in contact
+  double amount = 5;     ///< see TriggerForm
   Ramp ramp = Ramp::linear;
-  double ramp_s = 5e-6;          ///< rises from zero over this time
+  double ramp_s = 2.5e-6;        ///< rises from zero over this time
   double duration_s = infinity;  ///< taken away this long after its start
 };
 

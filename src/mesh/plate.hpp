@@ -31,16 +31,16 @@ enum class Top {
 
 /// A rectangle on the rigid plane y = 0 with its lower left corner at the origin.
 struct Plate {
-  double width_m = 0.2;
-  double height_m = 0.1;
-  double element_size_m = 2e-3 / 3;  ///< width and height must be whole multiples of it, to 1e-6
+  double width_m = 0.1;
+  double height_m = 0.05;
+  double element_size_m = 1e-3 / 3;  ///< width and height must be whole multiples of it, to 1e-6
   int coarsenings = 0;               ///< how often the element size doubles on the way up
-  double fine_height_m = 10e-3;      ///< least height of the elements of element_size_m, if coarsened
-  Corner corner = Corner::relief;
-  double relief_length_m = 5e-3;
-  double relief_height_m = 0.5e-3;
-  double relief_depth_m = 10e-3;  ///< height over which the relief's shift of the nodes fades out
-  double fillet_radius_m = 5e-3;
+  double fine_height_m = 5e-3;       ///< least height of the elements of element_size_m, if coarsened
+  Corner corner = Corner::none;
+  double relief_length_m = 2.5e-3;
+  double relief_height_m = 0.25e-3;
+  double relief_depth_m = 5e-3;  ///< height over which the relief's shift of the nodes fades out
+  double fillet_radius_m = 2.5e-3;
   Sides sides = Sides::free;  ///< others only with right-angled corners
   Top top = Top::loaded;
 };

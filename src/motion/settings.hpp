@@ -18,8 +18,8 @@ struct TimeStepping {
   int interface_rows = 4;       ///< rows of cells next to the interface that are sub-cycled
   int interface_substeps = 18;  ///< sub-steps per step there; 1 is the plain scheme
   bool local_steps = true;      ///< a graded plate's larger elements take larger steps
-  double end_s = 1.125e-3;      ///< end of the event, unless it comes to rest before
-  double quiet_s = 30e-6;       ///< end it earlier when no node has slipped for this long
+  double end_s = 0.5625e-3;     ///< end of the event, unless it comes to rest before
+  double quiet_s = 15e-6;       ///< end it earlier when no node has slipped for this long
 };
 
 }  // namespace slipfront::motion

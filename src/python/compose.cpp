@@ -134,7 +134,9 @@ class Stepper {
   }
 
   void start_from_statics(std::optional<double> share, const nb::kwargs& loading) {
-    const auto keys = with_table(joined(keys_, {{"event.kind", "none"}}), "loading", loading);
+    // Of the case only the loading counts.
+    const auto keys =
+        with_table(joined(keys_, {{"event.kind", "none"}, {"base.kind", "rigid"}}), "loading", loading);
     const auto config = input::CaseFile(input::CaseText{"", "case", {}}, keys).config();
     if (config.loading.method != statics::LoadingMethod::direct)
       throw UserError("{} must be direct here; remove it", Key("loading.method"));

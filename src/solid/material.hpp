@@ -13,7 +13,7 @@ struct Material {
   double poissons_ratio = 0.37;
   double density_kg_per_m3 = 1200;
   Plane plane = Plane::stress;
-  double stiffness_damping_s = 0.1e-6;  ///< beta_R: the internal force is K (u + beta_R v)
+  double stiffness_damping_s = 0.05e-6;  ///< beta_R: the internal force is K (u + beta_R v)
 };
 
 double shear_modulus_Pa(const Material& material);

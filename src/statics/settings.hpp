@@ -32,13 +32,13 @@ enum class StaticSolver {
 /// Displacements of the top edge: pushed down along a line, then moved to +x; or the forces of the interface
 /// that they are to give. Forces are per unit thickness.
 struct Loading {
-  double tilt_left_m = 0.37e-3;    ///< downward displacement at the left end
-  double tilt_right_m = 0.037e-3;  ///< ... at the right end, linear between
+  double tilt_left_m = 0.2e-3;   ///< downward displacement at the left end
+  double tilt_right_m = 0.2e-3;  ///< ... at the right end, linear between
   TopEdge top_during_tilt = TopEdge::held;
   LoadingMethod method = LoadingMethod::direct;
   StaticSolver solver = StaticSolver::automatic;
   double shear_speed_over_c_L = 1e-6;  ///< v_x / c_L of the top edge
-  double edge_margin_m = 10e-3;  ///< "inside" the interface leaves out this much at each end of the contact
+  double edge_margin_m = 5e-3;  ///< "inside" the interface leaves out this much at each end of the contact
   double critical_margin =
       1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)
   /// At most one of the two, of the state before any shear; then tilt_left_m and tilt_right_m do not count.

@@ -17,7 +17,7 @@ struct LawList {};
 /// All friction laws the case file can name; a new law is one more type in this list. The first is the
 /// default.
 using Registry =
-    LawList<VelocityWeakening, Coulomb, SlipWeakening, SlipWeakeningHealing, ExponentialSlipWeakening,
+    LawList<SlipWeakening, SlipWeakeningHealing, ExponentialSlipWeakening, VelocityWeakening, Coulomb,
             SlipTable, SlipRateTable, RateAndStateAging, RateAndStateSlip, RateAndStateStrong>;
 using FirstLaw = decltype([]<class First, class... Others>(LawList<First, Others...>) {
   return First{};

@@ -21,8 +21,8 @@ struct LinearSlipWeakening {
   static constexpr SlipMemory memory = slip_memory;
 
   double mu_s = 0.6;
-  double mu_k = 0.3;
-  double d_c_m = 4e-6;
+  double mu_k = 0.45;
+  double d_c_m = 5e-6;
 
   static constexpr std::array<Parameter<LinearSlipWeakening>, 3> parameters() {
     using L = LinearSlipWeakening;
