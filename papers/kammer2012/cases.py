@@ -94,7 +94,6 @@ def sequences(quick: bool) -> list[Run]:
                 "loading.shear_speed_over_c_L": 1e-9,
                 "sequence.max_events": 1000,
                 "sequence.to_global_sliding": True,
-                "time.quiet_s": 0.45e-3,  # a period of shear waves between interface and top edge
                 "time.end_s": 10e-3,
             },
         )
