@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "input/default_rules.hpp"
 #include "input/entries.hpp"
 #include "solid/operator.hpp"
 #include "statics/plate_solver.hpp"
@@ -332,18 +333,26 @@ std::vector<double> numbers_of(const Value& value) {
   return {};
 }
 
-/// Refuses numbers of which products or quotients could leave the range of doubles.
+void check_magnitude(const std::string& key, double number) {
+  const std::string unit = unit_of(key);
+  const Magnitudes& magnitudes = magnitudes_of(unit);
+  const double size = std::abs(number);
+  if (size == 0 || std::isinf(size) || (size >= magnitudes.least && size <= magnitudes.most)) return;
+  throw UserError("{} is {}; its magnitude must be at least {:g} and at most {}", Key(key),
+                  with_unit(fmt::format("{}", number), unit), magnitudes.least,
+                  with_unit(fmt::format("{:g}", magnitudes.most), unit));
+}
+
+/// Refuses numbers of which products or quotients could leave the range of doubles; defaults that follow from
+/// others after these.
 void check_magnitudes(const Case& config) {
+  const auto check = [&](const Entry& entry) {
+    for (const double number : numbers_of(entry.get(config))) check_magnitude(entry.key, number);
+  };
   for (const Entry& entry : entries_of(config))
-    for (const double number : numbers_of(entry.get(config))) {
-      const std::string unit = unit_of(entry.key);
-      const Magnitudes& magnitudes = magnitudes_of(unit);
-      const double size = std::abs(number);
-      if (size == 0 || std::isinf(size) || (size >= magnitudes.least && size <= magnitudes.most)) continue;
-      throw UserError("{} is {}; its magnitude must be at least {:g} and at most {}", Key(entry.key),
-                      with_unit(fmt::format("{}", number), unit), magnitudes.least,
-                      with_unit(fmt::format("{:g}", magnitudes.most), unit));
-    }
+    if (default_rule_of(entry.key) == nullptr) check(entry);
+  for (const auto& rule : default_rules())
+    if (const Entry& entry = entry_of(rule.key); applies(entry, config)) check(entry);
 }
 
 /// Refuses more steps than can be taken or counted. The step is estimated from the time in which a wave

@@ -14,6 +14,7 @@
 
 #include "files/checksum.hpp"
 #include "fuzz.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "results/stream.hpp"
 #include "run/run.hpp"
 
@@ -30,7 +31,9 @@ input::Case tiny_case() {
   config.plate.width_m = 0.04;
   config.plate.height_m = 0.02;
   config.plate.element_size_m = 0.01;
-  config.plate.corner = mesh::Corner::none;
+  config.base.kind = input::BaseKind::rigid;
+  config.friction = interface::VelocityWeakening{};
+  config.event = interface::EventKind::spontaneous;
   config.time.interface_rows = 1;
   config.time.interface_substeps = 2;
   config.time.end_s = 1;

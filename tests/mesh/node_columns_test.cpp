@@ -227,7 +227,9 @@ TEST(MakeCorners, HaveAllCellsThatAreNoSquaresAndSomeAroundThem) {
   const Plate relieved{.width_m = 0.06,
                        .height_m = 0.03,
                        .element_size_m = 1e-3,
+                       .corner = Corner::relief,
                        .relief_length_m = 4.5e-3,
+                       .relief_height_m = 0.5e-3,
                        .relief_depth_m = 6.2e-3};
   const auto whole = make_plate(relieved), corners = make_corners(relieved, around);
   EXPECT_LT(corners.n_nodes(), whole.n_nodes() / 3);

@@ -190,7 +190,7 @@ TEST(PlateErrors, NameTheKeyAndSayWhatToDo) {
            {&Plate::relief_height_m, 3e-3, "plate.relief_height_m", "too steep"},
            {&Plate::relief_depth_m, 0.11, "plate.relief_depth_m", "does not fit"},
            {&Plate::relief_depth_m, 0.9e-3, "plate.relief_depth_m", "at least twice"}}) {
-    Plate plate;
+    auto plate = test::plate_of(0.2, 0.1, 2e-3 / 3, Corner::relief);
     plate.*member = value;
     EXPECT_THAT(error_of(plate), AllOf(HasSubstr(key), HasSubstr(text)));
   }

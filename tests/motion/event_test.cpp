@@ -27,12 +27,14 @@ bool always(std::int64_t, std::int64_t) {
   return true;
 }
 
+const statics::Loading tilted_plate{.tilt_left_m = 0.37e-3, .tilt_right_m = 0.037e-3, .edge_margin_m = 10e-3};
+
 /// The paper's plate with 5 mm cells.
 class EventRun : public ::testing::Test {
  protected:
   mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, 5e-3, Corner::none);
-  solid::Material material_;
-  statics::Statics statics_{mesh_, material_, {}, mu_s};
+  solid::Material material_{.stiffness_damping_s = 0.1e-6};
+  statics::Statics statics_{mesh_, material_, tilted_plate, mu_s};
   statics::Equilibrium calm_ = statics_.shear_to(0.5);
   double c_L_ = solid::longitudinal_speed_m_per_s(material_);
   Waves waves_{c_L_, solid::shear_modulus_Pa(material_) / solid::shear_speed_m_per_s(material_)};
@@ -334,9 +336,9 @@ TEST(Halo, ReachesPastTheDistanceAhead) {
 
 Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, double top_speed_m_per_s,
               double c_L_m_per_s, double expected_shear_m, const Monitor& monitor) {
-  const statics::Loading loading;
   stepper.start(tilted, top_speed_m_per_s);
-  return RampRun(stepper, {tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m}, monitor)
+  return RampRun(stepper, {tilted, tilted_plate, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m},
+                 monitor)
       .run();
 }
 
@@ -345,7 +347,7 @@ TEST(Ramp, ReachesTheStaticStates) {
   // than the paper's, on a coarse mesh: inertia and damping change stresses by rho c v, 1e-3 of p at most.
   const auto mesh = support::make_plate(0.2, 0.1, 10e-3, Corner::none);
   const solid::Material material;
-  const statics::Loading loading;
+  const auto& loading = tilted_plate;
   const statics::Statics statics(mesh, material, loading, mu_s);
   const auto expected = statics.shear_to(1 - loading.critical_margin);
   const auto tilted = statics.shear_by(0);

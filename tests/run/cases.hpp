@@ -2,16 +2,35 @@
 #pragma once
 
 #include "input/friction_along_x.hpp"
+#include "input/schema.hpp"
 #include "interface/friction/velocity_weakening.hpp"
 #include "run/run.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::test {
 
-/// The paper's plate on a mesh that a run takes milliseconds for.
+/// The plate of Kammer et al. (2012) on the rigid plane.
+inline input::Case paper_case() {
+  auto config = input::parse_tables({{"plate.width_m", "0.2"},
+                                     {"plate.height_m", "0.1"},
+                                     {"plate.corner", "relief"},
+                                     {"base.kind", "rigid"},
+                                     {"loading.tilt_left_m", "0.37e-3"},
+                                     {"loading.tilt_right_m", "0.037e-3"},
+                                     {"friction.law", "velocity_weakening"},
+                                     {"event.kind", "spontaneous"}});
+  // What other events and corners than its own have by default.
+  config.plate.fillet_radius_m = 5e-3;
+  config.trigger.zone_m = 10e-3;
+  config.trigger.ramp_s = 5e-6;
+  config.nucleation = {.x_m = 0.1, .half_length_m = 10e-3, .taper_m = 5e-3};
+  return config;
+}
+
+/// That on a mesh that a run takes milliseconds for.
 inline input::Case coarse_case(interface::EventKind event = interface::EventKind::spontaneous,
                                double element_size_m = 4e-3) {
-  input::Case config;
+  auto config = paper_case();
   config.plate.element_size_m = element_size_m;
   config.event = event;
   config.time.end_s = 250e-6;
@@ -25,7 +44,6 @@ inline input::Case prestressed_case(double element_size_m = 2e-3) {
   config.plate.sides = mesh::Sides::periodic;
   config.loading.method = statics::LoadingMethod::prestress;
   config.prestress = {4e6, 5e6, ""};
-  config.nucleation.x_m = 0.1;
   return config;
 }
 

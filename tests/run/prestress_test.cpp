@@ -30,7 +30,7 @@ using test::run_case;
 
 /// A column of four periodic elements on a frictional plane.
 input::Case column(mesh::Top top) {
-  input::Case c;
+  auto c = test::paper_case();
   c.plate = {.width_m = 4e-3,
              .height_m = 0.06,
              .element_size_m = 1e-3,
@@ -249,7 +249,7 @@ TEST(Nucleation, ExcludedZoneOfAPatchAtThePeriodicEdge) {
 TEST(Prestress, CombinationsThatHaveNoLoadingAreRefused) {
   using mesh::Sides, mesh::Top;
   for (const auto method : {statics::LoadingMethod::direct, statics::LoadingMethod::ramp}) {
-    input::Case c;
+    auto c = test::paper_case();
     c.plate.corner = mesh::Corner::none;
     c.loading.method = method;
     for (const auto& [sides, top, error] :

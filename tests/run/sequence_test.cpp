@@ -46,7 +46,7 @@ input::Case sequence_case(int max_events, double mu_k = 0.6) {
 
 /// Stick-slip of a small block in some seconds.
 input::Case rate_and_state_case(int max_events) {
-  input::Case config;
+  auto config = test::paper_case();
   config.plate = {.width_m = 0.04, .height_m = 0.02, .element_size_m = 1e-3, .corner = mesh::Corner::none};
   config.material.stiffness_damping_s = 2e-6;
   interface::RateAndStateAging law;

@@ -13,6 +13,7 @@
 #include "equilibria.hpp"
 #include "support/files.hpp"
 #include "support/interruption.hpp"
+#include "support/plate.hpp"
 
 namespace slipfront::statics {
 namespace {
@@ -137,7 +138,7 @@ TEST(Statics, SlipOfPartOfAPlateLowersItsShearAndRaisesThatBeside) {
 }
 
 TEST(Statics, APushedPlateBearsAtItsInterfaceWhatThePusherGives) {
-  const auto mesh = mesh::make_plate({.element_size_m = 4e-3, .corner = mesh::Corner::none});
+  const auto mesh = test::make_plate(0.2, 0.1, 4e-3, mesh::Corner::none);
   const boundary::Machine machine{.pusher = {8e-3, 24e-3}};
   const auto pushed = boundary::pushed_nodes(mesh, machine.pusher);
   ASSERT_EQ(pushed.size(), 5U);
@@ -194,9 +195,7 @@ TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
   // The whole plate without condensation: every unknown of every node, with the contact states found.
   for (const auto corner : {Corner::none, Corner::relief}) {
     SCOPED_TRACE(test::name_of(corner));
-    mesh::Plate plate;
-    plate.element_size_m = 0.01;
-    plate.corner = corner;
+    auto plate = test::plate_of(0.2, 0.1, 0.01, corner);
     plate.relief_length_m = 0.01;
     plate.relief_height_m = 2e-6;  // so shallow that it closes
     plate.relief_depth_m = 0.01;

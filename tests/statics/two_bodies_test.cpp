@@ -108,7 +108,8 @@ struct Pair {
 };
 
 mesh::Mesh graded_base() {
-  return mesh::make_plate({.height_m = 0.096,
+  return mesh::make_plate({.width_m = 0.2,
+                           .height_m = 0.096,
                            .element_size_m = 4e-3,
                            .coarsenings = 1,
                            .fine_height_m = 16e-3,

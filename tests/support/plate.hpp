@@ -18,6 +18,9 @@ inline mesh::Plate plate_of(double width_m, double height_m, double element_m,
   plate.height_m = height_m;
   plate.element_size_m = element_m;
   plate.corner = corner;
+  plate.fine_height_m = plate.relief_depth_m = 10e-3;
+  plate.relief_length_m = plate.fillet_radius_m = 5e-3;
+  plate.relief_height_m = 0.5e-3;
   return plate;
 }
 
