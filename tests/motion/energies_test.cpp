@@ -23,6 +23,7 @@ using support::algorithms;
 using support::Balance;
 using support::gentle_law;
 using support::mu_s;
+using support::UnderWay;
 using support::with_algorithm;
 
 /// Corner, rows and sub-steps of the interface layer.
@@ -41,15 +42,15 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
               int steps, const interface::ContactModel& law) const {
     const auto mesh = support::tiny_plate(corner_);
     const auto e = statics::Statics(mesh, material, support::tilted, mu_s).shear_to(shear_ratio);
-    Stepper stepper(mesh, material, law, time_);
-    stepper.start(e, top_speed, triggered ? support::left_trigger(e, mesh, mu_s) : Loads{});
-    Recorder recorder(e, mu_s, 0);
-    Outcome outcome{{stepper.energies()}};
-    for (int step = 0; step < steps; ++step) {
-      stepper.advance(recorder);
-      if (steps <= 10'000 || step % 100 == 99) outcome.look(stepper.energies());
+    UnderWay way({mesh, material, law, time_}, e, top_speed,
+                 triggered ? support::left_trigger(e, mesh, mu_s) : Loads{});
+    Outcome outcome{{way.stepper.energies()}};
+    const int interval = steps <= 10'000 ? 1 : 100;
+    for (int step = 0; step < steps; step += interval) {
+      way.advance(interval);
+      outcome.look(way.stepper.energies());
     }
-    outcome.n_onsets = recorder.record_until(stepper.time_s()).onsets.size();
+    outcome.n_onsets = way.n_onsets();
     return outcome;
   }
 };
@@ -121,14 +122,12 @@ Landing land(const mesh::Mesh& mesh, const TimeStepping& time, interface::Contac
     v.x[n] = 100 * (0.01 - mesh.y_m[n]);
     v.y[n] = -200 * (0.01 - mesh.y_m[n]) * (1 + swing * std::sin(314.159265 * mesh.x_m[n]));
   }
-  const auto e = support::in_flight(mesh, u, v);
-  Stepper stepper(mesh, {}, with_algorithm(gentle_law, algorithm), time);
-  stepper.start(e, 1);
-  Recorder recorder(e, mu_s, 0);
-  Landing landing{{stepper.energies()}};
+  UnderWay way({mesh, {}, with_algorithm(gentle_law, algorithm), time}, support::in_flight(mesh, u, v), 1);
+  const auto& stepper = way.stepper;
+  Landing landing{{way.stepper.energies()}};
   for (int step = 0; step < steps; ++step) {
-    stepper.advance(recorder);
-    landing.look(stepper.energies());
+    way.advance(1);
+    landing.look(way.stepper.energies());
     landing.touched |= support::touches(stepper);
     landing.left |= landing.touched && !support::touches(stepper);
   }

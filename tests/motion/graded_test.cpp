@@ -20,6 +20,7 @@ namespace {
 using mesh::Corner;
 using support::max_difference;
 using support::mu_s;
+using support::UnderWay;
 
 /// 24 mm x 24 mm in elements of 1, 2 and 4 mm: rows 4, 3 and 2 of them.
 mesh::Plate graded_plate(Corner corner, int coarsenings = 2) {
@@ -79,15 +80,10 @@ TEST(GradedSteps, AreNoLargerThanTheCellsAllow) {
 TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
   const auto e = statics::Statics(mesh_, {}, graded_loading, mu_s).shear_to(0.9);
   for (const auto algorithm : support::algorithms) {
-    Stepper stepper(mesh_, {}, support::with_algorithm(support::gentle_law, algorithm), time_);
-    stepper.start(e, 0.2, support::left_trigger(e, mesh_, mu_s));
-    Recorder recorder(e, mu_s, 0);
-    support::Balance balance{stepper.energies()};
-    for (int step = 0; step < 300; ++step) {
-      stepper.advance(recorder);
-      balance.look(stepper.energies());
-    }
-    EXPECT_GT(recorder.record_until(stepper.time_s()).onsets.size(), 5);
+    UnderWay way({mesh_, {}, support::with_algorithm(support::gentle_law, algorithm), time_}, e, 0.2,
+                 support::left_trigger(e, mesh_, mu_s));
+    const auto balance = way.balance_of(300);
+    EXPECT_GT(way.n_onsets(), 5);
     EXPECT_LT(balance.last.friction_work, -1e-6 * balance.largest_J);
     EXPECT_LT(balance.last.damping_work, -1e-6 * balance.largest_J);
     EXPECT_EQ(balance.last.coupling_work != 0, time_.interface_substeps > 1 || time_.local_steps);
@@ -101,19 +97,14 @@ TEST_P(GradedPlate, FlightDoesNotGrow) {
       Stepper(mesh_, {.stiffness_damping_s = 0}, support::paper_law, time_).lowest_step_s();
   Stepper stepper(mesh_, {.stiffness_damping_s = 0.05 * undamped_s}, support::paper_law, time_);
   ASSERT_EQ(stepper.step_s() > stepper.lowest_step_s(), time_.local_steps);
-  Random random(11);
-  auto rough = support::random_flight(mesh_, 11, 0, 0, 0.01);
-  for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
-    rough.u_per_shear.x[n] = random(), rough.u_per_shear.y[n] = random();
-  for (const auto n : mesh_.far_edge_nodes) rough.u_per_shear.x[n] = rough.u_per_shear.y[n] = 0;
-  stepper.start(rough, 1);
-  Recorder recorder(rough, mu_s, 0);
+  const auto rough = support::random_flight(mesh_, 11, 0, 1, 0.01);
+  UnderWay way(std::move(stepper), rough, 1);
   double last = std::numeric_limits<double>::infinity();
   for (int block = 0; block < 6; ++block) {
     double largest = 0;
     for (int step = 0; step < 1000; ++step) {
-      stepper.advance(recorder);
-      largest = std::max(largest, stepper.energy_J_per_m());
+      way.advance(1);
+      largest = std::max(largest, way.stepper.energy_J_per_m());
     }
     EXPECT_LT(largest, last);
     last = largest;
@@ -125,10 +116,10 @@ TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
   const auto mesh = mesh::make_plate(graded_plate(std::get<0>(GetParam()), 1));
   const auto e = statics::Statics(mesh, {}, graded_loading, mu_s).shear_by(0.02e-3);
   const auto run = [&](const Execution& execution) {
-    Stepper stepper(mesh, {}, support::gentle_law, time_, execution);
-    stepper.start(e, 0.2, support::left_trigger(e, mesh, mu_s));
-    Recorder recorder(e, mu_s, 0);
-    EXPECT_EQ(stepper.advance(recorder, 60, {}), 60);
+    UnderWay way({mesh, {}, support::gentle_law, time_, execution}, e, 0.2,
+                 support::left_trigger(e, mesh, mu_s));
+    auto& stepper = way.stepper;
+    EXPECT_EQ(stepper.advance(way.recorder, 60, {}), 60);
     return std::tuple(stepper.u_m().x, stepper.u_m().y, stepper.energies().stored(),
                       stepper.energies().work());
   };
@@ -149,11 +140,9 @@ TEST(Graded, SinglePrecisionOfTheCoarsestBlockDiffersByRounding) {
   for (const int k : {0, 1}) {
     auto time = stepping(4, true);
     time.precision = k == 0 ? Precision::double_precision : Precision::single_precision;
-    Stepper stepper(mesh, {}, support::paper_law, time);
-    stepper.start(e, 1);
-    Recorder recorder(e, mu_s, 0);
-    EXPECT_EQ(stepper.advance(recorder, n_steps, {}), n_steps);
-    v[k] = stepper.v_m_per_s();
+    UnderWay way({mesh, {}, support::paper_law, time}, e, 1);
+    EXPECT_EQ(way.stepper.advance(way.recorder, n_steps, {}), n_steps);
+    v[k] = way.stepper.v_m_per_s();
   }
   // Rounding of u (20 um, turned into velocities by 1/dt) and v (1 m/s), 6e-8 of each in every step.
   const double dt = 8e-7, difference = max_difference(v[1], v[0]);
@@ -194,14 +183,12 @@ double reflection(bool shear, int elements_per_wave, bool local) {
           -c * window * (k * std::cos(k * s) - std::sin(k * s) * s / (width_m * width_m));
       u.y[n] += 0.01;
     }
-    const auto e = support::in_flight(mesh, u, v);
-    Stepper stepper(mesh, material, support::paper_law, stepping(1, local));
+    UnderWay way({mesh, material, support::paper_law, stepping(1, local)}, support::in_flight(mesh, u, v), 1);
+    const auto& stepper = way.stepper;
     EXPECT_EQ(stepper.step_s() > stepper.lowest_step_s(), local && coarsenings > 0);
-    stepper.start(e, 1);
-    Recorder recorder(e, mu_s, 0);
     // Until what comes back is where it began; both plates at the same time, the steps being of two lengths.
     const int n_steps = static_cast<int>(2 * (join_m - middle_m) / (c * 2 * stepper.lowest_step_s())) * 2;
-    while (stepper.time_s() < (n_steps - 0.5) * stepper.lowest_step_s()) stepper.advance(recorder);
+    way.advance_to((n_steps - 0.5) * stepper.lowest_step_s());
     std::vector<double> values;
     for (int j = 0; j < static_cast<int>(3.8 * elements_per_wave); ++j) {
       const auto n = mesh.grid.node(2, j);
@@ -251,14 +238,10 @@ TEST(GeneralMesh, MovesAsThePlainPlate) {
   const double stable_step_s = Stepper(mesh, {}, support::gentle_law, time).stable_step_s();
   const auto run = [&](const mesh::Mesh& m, const statics::Equilibrium& state) {
     time.step_factor = 0.9 * stable_step_s / Stepper(m, {}, support::gentle_law, time).stable_step_s();
-    Stepper stepper(m, {}, support::gentle_law, time);
-    stepper.start(state, 0.2, support::left_trigger(state, m, mu_s));
-    Recorder recorder(state, mu_s, 0);
-    support::Balance balance{stepper.energies()};
-    for (int step = 0; step < 40; ++step) stepper.advance(recorder);
-    balance.look(stepper.energies());
+    UnderWay way({m, {}, support::gentle_law, time}, state, 0.2, support::left_trigger(state, m, mu_s));
+    const auto balance = way.balance_of(40);
     EXPECT_LE(balance.worst_J, 1e-12 * balance.last.stored());
-    return stepper.u_m();
+    return way.stepper.u_m();
   };
   const auto plain = run(mesh, e), other = run(general, renumbered);
   double worst = 0;

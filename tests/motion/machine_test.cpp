@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "interface/friction/coulomb.hpp"
@@ -15,9 +13,9 @@
 namespace slipfront::motion {
 namespace {
 
-using support::Balance;
 using support::gentle_law;
 using support::mu_s;
+using support::UnderWay;
 
 constexpr double rigid = infinity;
 
@@ -53,23 +51,15 @@ INSTANTIATE_TEST_SUITE_P(Samples, AMachine,
                          });
 
 TEST_P(AMachine, HoldsAPlateAtRest) {
-  Stepper stepper(bodies(), gentle_law, time_);
-  stepper.start(state_, 0);
-  Recorder recorder(state_, mu_s, 0);
-  for (int step = 0; step < 200; ++step) stepper.advance(recorder);
-  EXPECT_LT(test::max_difference(stepper.u_m(), state_.u_m), 1e-12 * test::max_abs(state_.u_m));
+  UnderWay way({bodies(), gentle_law, time_}, state_, 0);
+  way.advance(200);
+  EXPECT_LT(test::max_difference(way.stepper.u_m(), state_.u_m), 1e-12 * test::max_abs(state_.u_m));
 }
 
 TEST_P(AMachine, GivesThePlateTheWorkThatIsLeft) {
-  Stepper stepper(bodies(), gentle_law, time_);
-  stepper.start(state_, 0.2, support::left_trigger(state_, mesh_, mu_s));
-  Recorder recorder(state_, mu_s, 0);
-  Balance balance{stepper.energies()};
-  for (int step = 0; step < 400; ++step) {
-    stepper.advance(recorder);
-    balance.look(stepper.energies());
-  }
-  EXPECT_GT(recorder.record_until(stepper.time_s()).onsets.size(), 5);
+  UnderWay way({bodies(), gentle_law, time_}, state_, 0.2, support::left_trigger(state_, mesh_, mu_s));
+  const auto balance = way.balance_of(400);
+  EXPECT_GT(way.n_onsets(), 5);
   EXPECT_GT(std::abs(balance.last.machine), 1e-6 * balance.largest_J);
   EXPECT_GT(std::abs(balance.last.far_edge_work), 1e-6 * balance.largest_J);
   EXPECT_LE(balance.worst_J, 1e-12 * balance.largest_J);
@@ -77,70 +67,13 @@ TEST_P(AMachine, GivesThePlateTheWorkThatIsLeft) {
 
 TEST_P(AMachine, GoesBackAsItCame) {
   material_.stiffness_damping_s = 0;
-  Stepper stepper(bodies(), {interface::Coulomb{0}}, time_);
-  auto flying = support::random_flight(mesh_, 5, 1e-8, 1e-2, 1e-4);
-  stepper.start(flying, 1);
-  Recorder recorder(flying, mu_s, 0);
-  for (int step = 0; step < 50; ++step) stepper.advance(recorder);
-  EXPECT_GT(test::max_difference(stepper.u_m(), flying.u_m), 1e-8);
-  stepper.reverse(recorder);
-  for (int step = 0; step < 50; ++step) stepper.advance(recorder);
-  EXPECT_LT(test::max_difference(stepper.u_m(), flying.u_m), 1e-12);
-}
-
-/// Of a lifted body that moves with `v`: displacements after a time, at a speed of 1 m/s of the machine.
-solid::Field after(const mesh::Mesh& mesh, const solid::Material& material, const boundary::Machine& machine,
-                   solid::Field v, double time_s, double& end_s) {
-  const BodySource body{mesh, material, nullptr, nullptr, machine};
-  Stepper stepper(std::span(&body, 1), {interface::Coulomb{0}}, support::one_substep());
-  solid::Field u(mesh.n_nodes());
-  for (double& y : u.y) y = 1e-3;
-  const auto e = support::in_flight(mesh, u, std::move(v));
-  stepper.start(e, 1);
-  Recorder recorder(e, mu_s, 0);
-  while (stepper.time_s() < time_s) stepper.advance(recorder);
-  end_s = stepper.time_s();
-  return stepper.u_m();
-}
-
-TEST(Machine, LetsABlockSwingOnItsSpring) {
-  constexpr double K_Pa = 4e6;
-  const auto mesh = mesh::make_plate(support::plate_of(0.02, 0.01, 1e-3));
-  const solid::Material material{.stiffness_damping_s = 0};
-  const double omega = std::sqrt(K_Pa / (material.density_kg_per_m3 * 0.02 * 0.01));
-  solid::Field v(mesh.n_nodes());
-  std::ranges::fill(v.x, 2.0);  // beyond the machine by 1 m/s
-  double end_s = 0;
-  const auto u = after(mesh, material, {K_Pa, rigid}, v, 0.8 * 2 * std::numbers::pi / omega, end_s);
-  // The spring is at one edge of the block, which is a spring, too: K H/(G W), 1/1000 of this one.
-  for (const double u_x_m : u.x) EXPECT_NEAR(u_x_m - end_s, std::sin(omega * end_s) / omega, 5e-3 / omega);
-}
-
-TEST(Machine, LetsAColumnSwingUpAndDown) {
-  // Free below, on a spring above: u = cos(k y) sin(omega t), E k tan(k H) = K/W, without lateral strain.
-  constexpr double K_Pa = 6e9, H_m = 0.01, W_m = 0.02;
-  const solid::Material material{.poissons_ratio = 1e-12, .stiffness_damping_s = 0};
-  const double E_Pa = material.youngs_modulus_Pa, c = std::sqrt(E_Pa / material.density_kg_per_m3);
-  double below = 0, k = 0.5 * std::numbers::pi / H_m, above = k;
-  for (int bisection = 0; bisection < 60; ++bisection) {
-    k = 0.5 * (below + above);
-    (E_Pa * k * std::tan(k * H_m) < K_Pa / W_m ? below : above) = k;
-  }
-  const double omega = k * c;
-  double off_before = infinity;
-  for (const int rows : {10, 20}) {
-    const auto mesh = mesh::make_plate(support::plate_of(W_m, H_m, H_m / rows));
-    solid::Field v(mesh.n_nodes());
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) v.y[n] = std::cos(k * mesh.y_m[n]);
-    for (const auto n : mesh.far_edge_nodes) v.x[n] = 0;
-    double end_s = 0, off = 0;
-    const auto u = after(mesh, material, {rigid, K_Pa}, v, 1.7 * std::numbers::pi / omega, end_s);
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-      off = std::max(off, std::abs(omega * (u.y[n] - 1e-3) - v.y[n] * std::sin(omega * end_s)));
-    EXPECT_LT(off, 0.3 * off_before);  // of second order
-    off_before = off;
-  }
-  EXPECT_LT(off_before, 0.01);
+  const auto flying = support::random_flight(mesh_, 5, 1e-8, 1e-2, 1e-4);
+  UnderWay way({bodies(), {interface::Coulomb{0}}, time_}, flying, 1);
+  way.advance(50);
+  EXPECT_GT(test::max_difference(way.stepper.u_m(), flying.u_m), 1e-8);
+  way.stepper.reverse(way.recorder);
+  way.advance(50);
+  EXPECT_LT(test::max_difference(way.stepper.u_m(), flying.u_m), 1e-12);
 }
 
 TEST(Machine, ASpringTakesItsShareOfTheStableStep) {
@@ -156,11 +89,9 @@ TEST(Machine, ASpringTakesItsShareOfTheStableStep) {
   EXPECT_LT(stiff_s, 0.95 * soft_s);
   // A plate on it stays where it is up to that step.
   const auto state = statics_of(mesh, material, {rigid, 1e12}).shear_to(0.9);
-  Stepper stepper(body_on(1e12), gentle_law, support::one_substep(1));
-  stepper.start(state, 0);
-  Recorder recorder(state, mu_s, 0);
-  for (int step = 0; step < 5000; ++step) stepper.advance(recorder);
-  EXPECT_LT(test::max_difference(stepper.u_m(), state.u_m), 1e-10 * test::max_abs(state.u_m));
+  UnderWay way({body_on(1e12), gentle_law, support::one_substep(1)}, state, 0);
+  way.advance(5000);
+  EXPECT_LT(test::max_difference(way.stepper.u_m(), state.u_m), 1e-10 * test::max_abs(state.u_m));
 }
 
 }  // namespace

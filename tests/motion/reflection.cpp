@@ -80,18 +80,16 @@ Measurement measure(PlaneWave incident, int columns, double wavelength, const so
       v.x[n] = (v_x[j] * phase).real();
       v.y[n] = (v_y[j] * phase).real();
     }
-  const auto e = support::in_flight(mesh, u, v);
-  stepper.start(e, 1);
-  Recorder recorder(e, 1.3, 0);
-  while (c * q_0 / k * stepper.time_s() < 2 * distance) stepper.advance(recorder);
+  support::UnderWay way(std::move(stepper), support::in_flight(mesh, u, v), 1);
+  way.advance_to(2 * distance * k / (c * q_0));
 
   for (int j = 0; j < rows; ++j) {
     u_x[j] = u_y[j] = 0;
     for (int i = 0; i < n_columns; ++i) {
       const auto n = mesh.grid.node(i, j);
       const Complex phase = std::polar(2.0 / n_columns, k_x * h * i);
-      u_x[j] += stepper.u_m().x[n] * phase;
-      u_y[j] += (stepper.u_m().y[n] - lift) * phase;
+      u_x[j] += way.stepper.u_m().x[n] * phase;
+      u_y[j] += (way.stepper.u_m().y[n] - lift) * phase;
     }
   }
   // What goes down is exp(i q y), along it or across.

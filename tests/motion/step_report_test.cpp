@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/step_report.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -51,30 +51,6 @@ inline statics::Equilibrium random_flight(const mesh::Mesh& mesh, std::uint64_t 
   return in_flight(mesh, u, v);
 }
 
-/// A Gaussian pulse of uniform motion along x or y.
-struct GaussianPulse {
-  bool shear, along_x;
-  double middle_m, c_m_per_s, lift_m;
-  static constexpr double width_m = 4e-3, amplitude_m = 1e-6;
-
-  statics::Equilibrium on(const mesh::Mesh& mesh, double step_s) const {
-    solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
-    const auto orphan = mesh::orphans(mesh);
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
-      if (orphan[n]) continue;
-      const auto at = [&](double time_s) {
-        const double s = ((along_x ? mesh.x_m[n] : mesh.y_m[n]) - middle_m - c_m_per_s * time_s) / width_m;
-        return amplitude_m * std::exp(-0.5 * s * s);
-      };
-      u.y[n] = lift_m;
-      (along_x != shear ? u.x : u.y)[n] += at(0);
-      // The velocity belongs to half a step earlier.
-      (along_x != shear ? v.x : v.y)[n] = (at(0) - at(-step_s)) / step_s;
-    }
-    return in_flight(mesh, u, v);
-  }
-};
-
 /// Plain scheme: the interface layer in step with the rest.
 inline TimeStepping one_substep(double step_factor = 0.9) {
   return {.step_factor = step_factor, .interface_rows = 1, .interface_substeps = 1};
@@ -131,6 +107,32 @@ struct Balance {
                               now.prestress_work, now.friction_work})
       largest_J = std::max(largest_J, std::abs(term));
   }
+};
+
+/// A stepper on its way from a state, whose energies are looked at after each step where that is asked for.
+struct UnderWay {
+  Stepper stepper;
+  Recorder recorder;
+
+  UnderWay(Stepper of, const statics::Equilibrium& from, double top_speed_m_per_s, Loads loads = {})
+      : stepper(std::move(of)), recorder(from, mu_s, 0) {
+    stepper.start(from, top_speed_m_per_s, std::move(loads));
+  }
+  void advance(int n_steps) {
+    for (int step = 0; step < n_steps; ++step) stepper.advance(recorder);
+  }
+  void advance_to(double time_s) {
+    while (stepper.time_s() < time_s) stepper.advance(recorder);
+  }
+  Balance balance_of(int n_steps) {
+    Balance balance{stepper.energies()};
+    for (int step = 0; step < n_steps; ++step) {
+      stepper.advance(recorder);
+      balance.look(stepper.energies());
+    }
+    return balance;
+  }
+  std::size_t n_onsets() { return recorder.record_until(stepper.time_s()).onsets.size(); }
 };
 
 }  // namespace slipfront::motion::support

@@ -20,15 +20,6 @@ struct Cells {
     stiffness.emplace_back();
     for (int k = 0; k < 64; ++k) stiffness.back()[k] = K(k / 8, k % 8);
   }
-  Eigen::MatrixXd dense(Eigen::Index n) const {
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-    for (std::size_t cell = 0; cell < unknowns.size(); ++cell)
-      for (int k = 0; k < 64; ++k) {
-        const auto i = unknowns[cell][k / 8], j = unknowns[cell][k % 8];
-        if (i >= 0 && j >= 0) K(i, j) += stiffness[cell][k];
-      }
-    return K;
-  }
   FrontalCholesky::StiffnessOf stiffness_of() const {
     return [this](std::size_t cell) -> const solid::CellStiffness& { return stiffness[cell]; };
   }
@@ -47,31 +38,7 @@ Cells some_cells() {
   return cells;
 }
 const std::vector<std::int32_t> some_ends{3, 6, 6, 10, 11, 12, 16};
-constexpr Eigen::Index n_some = 16, n_last = 4;
-
-TEST(FrontalCholesky, SolvesAsADenseFactorDoesAndGivesTheSchurComplementWithoutTheSprings) {
-  const auto cells = some_cells();
-  FrontalCholesky factor(some_ends, cells.unknowns);
-  const Eigen::VectorXd springs = Eigen::VectorXd::LinSpaced(n_last, 1, 4);
-  const auto S = factor.factorise(cells.stiffness_of(), springs);
-  ASSERT_TRUE(S);
-  Eigen::MatrixXd K = cells.dense(n_some);
-  const auto n = n_some - n_last;
-  const Eigen::MatrixXd schur =
-      K.bottomRightCorner(n_last, n_last) -
-      K.bottomLeftCorner(n_last, n) * K.topLeftCorner(n, n).llt().solve(K.topRightCorner(n, n_last));
-  EXPECT_LE(test::max_abs(*S - schur), 1e-13 * test::max_abs(schur));
-  EXPECT_EQ(test::max_abs(*S - S->transpose()), 0);
-  K.diagonal().tail(n_last) += springs;
-  Random random(4);
-  const Eigen::VectorXd f = Eigen::VectorXd::NullaryExpr(n_some, [&] { return random(); });
-  std::vector<double> x(f.data(), f.data() + n_some);
-  factor.solve(x);
-  const Eigen::VectorXd expected = K.llt().solve(f);
-  // Two direct solutions of a system whose condition number is of the order of 100.
-  for (Eigen::Index k = 0; k < n_some; ++k)
-    EXPECT_NEAR(x[k], expected(k), 1e-13 * expected.lpNorm<Eigen::Infinity>());
-}
+constexpr Eigen::Index n_last = 4;
 
 TEST(FrontalCholesky, TellsAMatrixThatIsNotDefinite) {
   auto cells = some_cells();

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Static equilibria of the plate on an elastic base.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,36 +14,6 @@ namespace {
 
 using mesh::Corner;
 using test::max_abs;
-
-std::shared_ptr<const Factorisation> factorised(const mesh::Mesh& mesh, const solid::Material& material,
-                                                TopConstraint top = TopConstraint::both) {
-  return std::make_shared<Factorisation>(ElasticBody{mesh, material}, top);
-}
-
-TEST(CondensedPair, CompliancesOfUnlikeBodiesAdd) {
-  const auto mesh = test::tiny_plate(Corner::relief);
-  const auto base_mesh = test::make_plate(0.02, 0.014, 1e-3, Corner::none);
-  const Eigen::Index n = 2 * static_cast<Eigen::Index>(mesh.interface_nodes.size());
-  Eigen::VectorXd D = Eigen::VectorXd::Ones(n);
-  for (Eigen::Index k = 0; k < n; k += 2) D(k) = -1;
-  for (const double factor : {1e-4, 1e4}) {
-    auto material = gel;
-    material.youngs_modulus_Pa *= factor;
-    const auto plate = factorised(mesh, pmma), base = factorised(base_mesh, material);
-    const Eigen::MatrixXd a = plate->condensed_stiffness().inverse();
-    const Eigen::MatrixXd b = D.asDiagonal() * base->condensed_stiffness().inverse() * D.asDiagonal();
-    const Eigen::MatrixXd pair = CondensedInterface(plate, base).stiffness().inverse();
-    EXPECT_LE(max_abs(pair - a - b), 1e-10 * max_abs(a + b)) << factor;
-  }
-}
-
-TEST(CondensedPair, OfAPlateFreeAlongXSlidesWithoutForce) {
-  const auto mesh = test::tiny_plate(Corner::relief);
-  const CondensedInterface pair(factorised(mesh, pmma, TopConstraint::vertical), factorised(mesh, gel));
-  Eigen::VectorXd along = Eigen::VectorXd::Zero(pair.stiffness().rows());
-  for (Eigen::Index k = 0; k < along.size(); k += 2) along(k) = 1;
-  EXPECT_LE(max_abs(pair.stiffness() * along), 1e-11 * max_abs(pair.stiffness()));
-}
 
 TopDisplacement tilted_and_sheared(const mesh::Mesh& mesh) {
   TopDisplacement top;
