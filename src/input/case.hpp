@@ -140,7 +140,7 @@ struct Case {
   std::optional<double> tip_slip_rate_m_per_s;
   interface::Regularisation regularisation;
   interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
-  interface::EventKind event = interface::EventKind::nucleation;
+  interface::EventKind event = interface::EventKind::spontaneous;
   interface::Trigger trigger;
   interface::Nucleation nucleation;
   Sequence sequence;

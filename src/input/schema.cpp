@@ -607,8 +607,8 @@ must be within these magnitudes, beyond which products of them would leave the r
   text += R"(
 Defaults that are lengths or times are multiples of `plate.width_m`, of `plate.height_m` or of the time width_m / c_S
 in which a shear wave crosses the plate (of two bodies with the slower one's c_S). `case.resolved.toml` beside the results has the values. Without any key two
-bodies of PMMA, 100 mm wide and 50 mm high, are pressed together by 0.2 mm and sheared until slip weakening lets two
-fronts leave a patch in the middle.
+bodies of PMMA, each 100 mm wide and 50 mm high, are pressed together by 0.25 mm at the left and 0.2 mm at the right,
+and sheared until slip begins by itself.
 
 )";
   return text + reference_of([](const Entry&) { return true; });

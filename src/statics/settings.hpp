@@ -32,7 +32,7 @@ enum class StaticSolver {
 /// Displacements of the top edge: pushed down along a line, then moved to +x; or the forces of the interface
 /// that they are to give. Forces are per unit thickness.
 struct Loading {
-  double tilt_left_m = 0.2e-3;   ///< downward displacement at the left end
+  double tilt_left_m = 0.25e-3;  ///< downward displacement at the left end
   double tilt_right_m = 0.2e-3;  ///< ... at the right end, linear between
   TopEdge top_during_tilt = TopEdge::held;
   LoadingMethod method = LoadingMethod::direct;

@@ -28,7 +28,7 @@ TEST(DefaultRules, ABaseIsLikeThePlate) {
       "[plate]\nheight_m = 0.2\nsides = 'absorbing'\ntop = 'absorbing'\n[material]\nyoungs_modulus_Pa = "
       "2e11\n"
       "poissons_ratio = 0.3\ndensity_kg_per_m3 = 7800\nstiffness_damping_s = 3e-7\n"
-      "[loading]\nmethod = 'prestress'\n[prestress]\nt_Pa = 1\np_Pa = 1\n[base]\n";
+      "[loading]\nmethod = 'prestress'\n[prestress]\nt_Pa = 1\np_Pa = 1\n[event]\nkind = 'none'\n[base]\n";
   const Case c = parsed(text);
   EXPECT_EQ(c.base.plate.height_m, 0.2);
   EXPECT_EQ(c.base.material.youngs_modulus_Pa, 2e11);

@@ -66,9 +66,7 @@ const Contradiction wrong_cases[] = {
     {"ElementOfALowerPlate", "[plate]\nelement_size_m = 1e-2\n", {{"plate.height_m", "1e-3"}}},
     // Loading
     {"TopHeld", "[loading]\nmethod = \"ramp\"\nshear_speed_over_c_L = 0 # here\n"},
-    {"TopHeldByTheMethod",
-     uniform_tractions + "shear_speed_over_c_L = 0\n[event]\nkind = \"spontaneous\"\n",
-     {{"loading.method", "direct"}}},
+    {"TopHeldByTheMethod", uniform_tractions + "shear_speed_over_c_L = 0\n", {{"loading.method", "direct"}}},
     {"NoTractions", "[loading]\nmethod = \"prestress\" # here\n[prestress]\nt_Pa = 1e6\n"},
     {"Relief", at_rest + "[plate]\ncorner = \"relief\" # here\n"},
     {"SpontaneousEvent", uniform_tractions + "[event]\nkind = \"spontaneous\" # here\n" + square},

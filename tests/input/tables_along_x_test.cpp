@@ -198,8 +198,8 @@ TEST(FrictionAlongX, KeysThatDoNothingAreRefused) {
   for (const auto& [line, error] :
        {Wrong{"between_rows = \"linear\"", "between_rows applies only with friction.file"},
         {"random_seed = 3", "random_seed applies only with friction.random_key other than none"},
-        {"random_key = \"d_c_m\"",
-         "random_key is d_c_m; the friction law velocity_weakening has mu_s, mu_k, "},
+        {"random_key = \"alpha_m2_per_s2\"",
+         "random_key is alpha_m2_per_s2; the friction law slip_weakening has mu_s, mu_k, "},
         {"random_key = \"mu_x\"", "random_key is \"mu_x\"; it must be one of none, mu_s, mu_k"}})
     expect_message(parse_error(std::string("[friction]\n") + line),
                    std::string("c.toml:2: friction.") + error);

@@ -17,6 +17,9 @@ inline const solid::Material pmma{};
 inline const solid::Material gel{
     .youngs_modulus_Pa = 0.3e9, .poissons_ratio = 0.45, .density_kg_per_m3 = 800};
 
+/// That of Kammer et al. (2012).
+inline const Loading tilted{.tilt_left_m = 0.37e-3, .tilt_right_m = 0.037e-3, .edge_margin_m = 10e-3};
+
 inline std::vector<double> uniform_mu_s(const mesh::Mesh& mesh) {
   return std::vector<double>(mesh.interface_nodes.size(), mu_s);
 }

@@ -76,7 +76,7 @@ TEST(Statics, UniformCompressionIsExact) {
 class PaperTilt : public ::testing::Test {
  protected:
   const mesh::Mesh mesh_ = paper_plate(4e-3);
-  const Statics statics_{mesh_, {}, {}, mu_s};
+  const Statics statics_{mesh_, {}, tilted, mu_s};
 };
 
 TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
@@ -101,7 +101,7 @@ TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
 TEST(Statics, ASlippedPlateIsTheOneBeforeUnderLessShear) {
   // All nodes have slipped as far as the edge has moved on: nothing else has changed.
   const auto mesh = paper_plate(4e-3);
-  Statics statics(mesh, {}, {}, mu_s);
+  Statics statics(mesh, {}, tilted, mu_s);
   const double slip_m = 1e-5;
   const auto before = statics.shear_to(0.999);
   auto u_x_m = lower_x(mesh, statics.tilted());
@@ -120,7 +120,7 @@ TEST(Statics, ASlippedPlateIsTheOneBeforeUnderLessShear) {
 
 TEST(Statics, SlipOfPartOfAPlateLowersItsShearAndRaisesThatBeside) {
   const auto mesh = paper_plate(4e-3);
-  Statics statics(mesh, {}, {}, mu_s);
+  Statics statics(mesh, {}, tilted, mu_s);
   const auto before = statics.shear_to(0.5);
   auto u_x_m = lower_x(mesh, statics.tilted());
   const auto slipped = [&](std::size_t k) { return mesh.x_m[mesh.interface_nodes[k]] < 0.1; };
@@ -183,7 +183,7 @@ TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
     plate.relief_height_m = 2e-6;  // so shallow that it closes
     plate.relief_depth_m = 0.01;
     const auto mesh = mesh::make_plate(plate);
-    const Statics statics(mesh, {}, {}, mu_s);
+    const Statics statics(mesh, {}, tilted, mu_s);
     const auto e = statics.shear_to(0.999);
     const auto put_down = lower_x(mesh, statics.tilted());
 
@@ -255,7 +255,7 @@ TEST(Statics, CanBeInterruptedBetweenSolutions) {
   int asked = 0;
   const auto solve_statics = [&](int last) {
     asked = 0;
-    Statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return asked++ < last; }).shear_to(1);
+    Statics(mesh, {}, tilted, mu_s, "friction.mu_s", [&] { return asked++ < last; }).shear_to(1);
   };
   solve_statics(1000);
   const int all = asked;
@@ -279,7 +279,7 @@ TEST(Statics, TellsTheUserWhatCannotBe) {
   const auto mesh = paper_plate(0.01, Corner::none);
   EXPECT_THAT(error_of([&] { Statics(mesh, {}, {.tilt_left_m = -1e-4, .tilt_right_m = -1e-4}, mu_s); }),
               HasSubstr("leaves the plate without contact; increase loading.tilt_left_m"));
-  const Statics statics(mesh, {}, {}, mu_s);
+  const Statics statics(mesh, {}, tilted, mu_s);
   EXPECT_THAT(error_of([&] { statics.shear_to(0.01 / mu_s); }), HasSubstr("the tilt alone brings t/p"));
   const Statics nothing_inside(mesh, {}, {.edge_margin_m = 0.15}, mu_s);
   EXPECT_THAT(error_of([&] { nothing_inside.shear_to(1); }), HasSubstr("no shear brings t/p inside"));
@@ -291,7 +291,7 @@ class FrictionAlong : public ::testing::Test {
   Statics statics(const std::function<double(double)>& mu) {
     mu_s_.clear();
     for (const auto n : mesh_.interface_nodes) mu_s_.push_back(mu(mesh_.x_m[n]));
-    return {{mesh_, pmma}, std::nullopt, {}, mu_s_};
+    return {{mesh_, pmma}, std::nullopt, tilted, mu_s_};
   }
   /// t/(mu_s p) of a node in contact.
   double share(const Equilibrium& e, std::size_t k) const {
