@@ -12,14 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-solid::Material material(solid::Plane plane = solid::Plane::stress) {
-  solid::Material m;
-  m.youngs_modulus_Pa = 5.65e9;
-  m.poissons_ratio = 0.33;
-  m.density_kg_per_m3 = 1180;
-  m.plane = plane;
-  return m;
-}
+const solid::Material m{.youngs_modulus_Pa = 5.65e9, .poissons_ratio = 0.33, .density_kg_per_m3 = 1180};
 
 struct Setting {
   Bodies bodies;
@@ -31,8 +24,9 @@ std::vector<Setting> settings() {
   std::vector<Setting> all;
   for (const auto plane : {solid::Plane::stress, solid::Plane::strain})
     for (const double share : {0.2, 0.7, 0.95}) {
-      const auto m = material(plane);
-      for (const auto& bodies : {Bodies(m), Bodies(m, m)})
+      auto of = m;
+      of.plane = plane;
+      for (const auto& bodies : {Bodies(of), Bodies(of, of)})
         all.push_back({bodies, share * limiting_speed_m_per_s(bodies)});
     }
   return all;
@@ -90,7 +84,7 @@ TEST(TipField, TractionsOnTheInterface) {
 }
 
 TEST(TipField, RigidPlaneHoldsTheBodyUp) {
-  const Bodies bodies(material());
+  const Bodies bodies(m);
   const TipField field(bodies, 800);
   // u_y = 0 at y = 0: 2 strain_xy = du_x/dy, whose slope along x is that of strain_xx upwards.
   const double h = 1e-4, size = field.strain_per_K(0.5, 0).xy;
@@ -122,7 +116,6 @@ TEST(TipField, SlipIsThatOfTheEnergyReleaseRate) {
 }
 
 TEST(TipField, AtRestAsInTextbooks) {
-  const auto m = material();
   const TipField field(Bodies(m, m), 0);
   for (const double angle : {-2.5, -1.0, 0.3, 1.5, 3.0}) {
     const auto s = field.stress_per_K(std::cos(angle), std::sin(angle));
@@ -135,7 +128,6 @@ TEST(TipField, AtRestAsInTextbooks) {
 }
 
 TEST(TipField, HasNoneBeyondTheLimitOrBetweenUnequalBodies) {
-  const auto m = material();
   auto stiff = m;
   stiff.youngs_modulus_Pa *= 2;
   const Bodies alike(m, m);

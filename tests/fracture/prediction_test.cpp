@@ -17,12 +17,7 @@ constexpr std::size_t n = 301, middle = 150;
 
 /// Alike bodies under a uniform drop.
 struct Sample {
-  solid::Material material = [] {
-    solid::Material m;
-    m.youngs_modulus_Pa = 3e9;
-    m.poissons_ratio = 0.33;
-    return m;
-  }();
+  solid::Material material{.youngs_modulus_Pa = 3e9, .poissons_ratio = 0.33};
   Bodies bodies{material, material};
   std::vector<double> x_m = [] {
     std::vector<double> x;

@@ -12,12 +12,7 @@
 namespace slipfront::fracture {
 namespace {
 
-solid::Material material(double nu = 0.33) {
-  solid::Material m;
-  m.youngs_modulus_Pa = 3e9;
-  m.poissons_ratio = nu;
-  return m;
-}
+const solid::Material m{.youngs_modulus_Pa = 3e9, .poissons_ratio = 0.33};
 
 std::vector<double> places(std::size_t n, double h_m) {
   std::vector<double> x_m;
@@ -31,7 +26,6 @@ CrackLoads uniform(std::size_t n, double t_Pa, double p_Pa, double coefficient) 
 
 TEST(StaticCrack, InteriorCrackBetweenHalfSpaces) {
   // G = drop^2 pi a/E' between alike bodies; a is half the length.
-  const auto m = material();
   const double h = 1e-3, drop = 2e5;
   const std::size_t n = 401;
   const auto response = response_of_half_spaces(Bodies(m, m), places(n, h));
@@ -49,7 +43,6 @@ TEST(StaticCrack, InteriorCrackBetweenHalfSpaces) {
 
 TEST(StaticCrack, IsThatOfTheWholeEquations) {
   // Slip and energy by a dense solution of each crack, with pressure that slip changes.
-  const auto m = material();
   const std::size_t n = 41;
   const auto response = response_of_half_spaces(Bodies(m), places(n, 1e-3));
   auto loads = uniform(n, 1e6, 2e6, 0.35);
@@ -86,7 +79,6 @@ TEST(StaticCrack, IsThatOfTheWholeEquations) {
 TEST(StaticCrack, NucleationLengthIsUenishiAndRices) {
   // 1.158 mu*/W; mu* = E/2 of alike bodies in plane stress. Pressure has a part on the rigid plane: there the
   // coefficient is 0.
-  const auto m = material();
   const std::size_t n = 201;
   const double h = 1e-3, weakening = 2e10;
   for (const auto& bodies : {Bodies(m, m), Bodies(m)}) {
@@ -102,7 +94,6 @@ TEST(StaticCrack, NucleationLengthIsUenishiAndRices) {
 }
 
 TEST(StaticCrack, NoEnergyWithoutDropAndNoneBeyondTheEnds) {
-  const auto m = material();
   const std::size_t n = 5;
   const auto response = response_of_half_spaces(Bodies(m, m), places(n, 1e-3));
   const auto loads = uniform(n, 0.7e6, 2e6, 0.4);

@@ -10,11 +10,7 @@ namespace slipfront::fracture {
 namespace {
 
 solid::Material material(double nu, solid::Plane plane = solid::Plane::stress, double E_Pa = 3e9) {
-  solid::Material m;
-  m.youngs_modulus_Pa = E_Pa;
-  m.poissons_ratio = nu;
-  m.plane = plane;
-  return m;
+  return {.youngs_modulus_Pa = E_Pa, .poissons_ratio = nu, .plane = plane};
 }
 
 /// In plane stress as in plane strain of this Poisson's ratio.

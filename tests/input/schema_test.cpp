@@ -240,29 +240,27 @@ TEST(Schema, PrestressAndNucleationReadBackFromToml) {
   expect_equal(parsed(to_toml(forced)), forced);
 }
 
-TEST(Schema, RoundedCornersReadBackFromToml) {
-  Case relief;
+TEST(Schema, WhatIsNotSetTogetherReadsBackFromToml) {
+  Case relief, fillet, pushed, on_machine, sequence;
   relief.plate.corner = mesh::Corner::relief;
   relief.plate.relief_length_m = 4e-3;
   relief.plate.relief_height_m = 3e-4;
   relief.plate.relief_depth_m = 8e-3;
-  Case fillet;
   fillet.base.kind = BaseKind::rigid;
   fillet.plate.corner = mesh::Corner::fillet;
   fillet.plate.fillet_radius_m = 3e-3;
-  for (const Case& c : {relief, fillet}) expect_equal(parsed(to_toml(c)), c);
-}
-
-TEST(Schema, SequencesReadBackFromToml) {
-  Case sequence;
+  pushed.machine.pusher = {0.01, 0.02};
+  on_machine.machine = {2e9, 0};
   sequence.loading.shear_speed_over_c_L = 1e-8;
   sequence.time.end_s = 1e-2;
   sequence.time.quiet_s = 1e-3;
   sequence.sequence = {7, 400, true, {{2, 3}, {1e-6, 1e-6}}, 0.02, 3, {}};
-  expect_equal(parsed(to_toml(sequence)), sequence);
-  sequence.friction = interface::RateAndStateAging {};
-  sequence.sequence = {7, 400, true, {}, 0, 1, 2e-3};
-  expect_equal(parsed(to_toml(sequence)), sequence);
+  auto slow = sequence;
+  slow.friction = interface::RateAndStateAging {};
+  slow.sequence = {7, 400, true, {}, 0, 1, 2e-3};
+  for (const Case& c : {relief, fillet, pushed, on_machine, sequence, slow})
+    expect_equal(parsed(to_toml(c)), c);
+  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").machine.is_rigid());
 }
 
 TEST(Schema, LoadingPathsRiseInTime) {
@@ -286,12 +284,6 @@ TEST(Schema, SlowSlipBetweenEventsNeedsAFactorisationAndAPressure) {
               HasSubstr("with a state"));
 }
 
-TEST(Schema, PushersReadBackFromToml) {
-  Case pushed;
-  pushed.machine.pusher = {0.01, 0.02};
-  expect_equal(parsed(to_toml(pushed)), pushed);
-}
-
 TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
   const std::string pusher = "loading.pusher_from_m = 0.01\nloading.pusher_to_m = 0.02\n";
   EXPECT_THAT(parse_error("loading.pusher_to_m = 0.02"), HasSubstr("an element above the interface"));
@@ -305,13 +297,6 @@ TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
   EXPECT_THAT(parse_error(pusher + "loading.solver = 'iterative'"), HasSubstr("loading.solver = direct"));
   EXPECT_THAT(parse_error(pusher + "time.precision = 'single'"), HasSubstr("time.precision = double"));
   EXPECT_THAT(parse_error(pusher + "loading.method = 'ramp'"), HasSubstr("loading.method = direct"));
-}
-
-TEST(Schema, MachinesReadBackFromToml) {
-  Case on_machine;
-  on_machine.machine = {2e9, 0};
-  expect_equal(parsed(to_toml(on_machine)), on_machine);
-  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").machine.is_rigid());
 }
 
 TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/exponential_slip_weakening.hpp"
@@ -15,6 +14,11 @@ namespace slipfront::interface {
 namespace {
 
 constexpr double dt_s = 1e-9, p_Pa = 5e6;
+constexpr SlipWeakening linear{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
+
+double linear_mu(double, double slip) {
+  return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0);
+}
 
 /// A node under a pressure that a function of the slip gives, at a slip rate that another one gives.
 struct Slipping {
@@ -53,9 +57,7 @@ Slipping passed(const FrictionLaw& law, Coefficient&& coefficient, int n = 20000
 }
 
 TEST(Breakdown, LinearSlipWeakening) {
-  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
-  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
-  const auto found = passed(law, mu).found();
+  const auto found = passed(linear, linear_mu).found();
   EXPECT_NEAR(found.work_J_per_m2[1], 0.5 * 0.2 * p_Pa * 2e-6, 1e-3);
   EXPECT_NEAR(found.distance_m[1], 2e-6, 2e-9);
   EXPECT_DOUBLE_EQ(found.peak_t_Pa[1], 0.6 * p_Pa);
@@ -67,14 +69,10 @@ TEST(Breakdown, LinearSlipWeakening) {
 }
 
 TEST(Breakdown, WithCohesion) {
-  SlipWeakening weakening{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
-  FrictionLaw law(weakening);
+  FrictionLaw law(linear);
   law.parameter("cohesion_Pa") = 1e6;
-  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
   Slipping node(law);
-  for (int k = 1; k <= 10000; ++k) {
-    node.go(0.5, mu);
-  }
+  for (int k = 1; k <= 10000; ++k) node.go(0.5, linear_mu);
   EXPECT_DOUBLE_EQ(node.found().peak_t_Pa[1], 0.6 * p_Pa + 1e6);
   EXPECT_NEAR(node.found().work_J_per_m2[1], 1.0, 1e-3);
   EXPECT_NEAR(node.found().residual_coefficient[1], 0.4, 1e-12);
@@ -82,10 +80,8 @@ TEST(Breakdown, WithCohesion) {
 
 TEST(Breakdown, PressureThatFallsIsNoBreakdown) {
   // The residual traction follows the pressure: what is lost at mu_k is heat.
-  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
-  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
-  Slipping node(law);
-  for (int k = 1; k <= 20000; ++k) node.go(0.5, mu, k < 8000 ? p_Pa : 0.5 * p_Pa);
+  Slipping node(linear);
+  for (int k = 1; k <= 20000; ++k) node.go(0.5, linear_mu, k < 8000 ? p_Pa : 0.5 * p_Pa);
   EXPECT_NEAR(node.found().work_J_per_m2[1], 1.0, 2e-3);
 }
 
@@ -118,22 +114,18 @@ TEST(Breakdown, WithoutAFallThereIsNone) {
 }
 
 TEST(Breakdown, UnderWayIsNotComplete) {
-  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
-  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
-  Slipping node(law);
-  for (int k = 1; k <= 1000; ++k) node.go(1, mu);
+  Slipping node(linear);
+  for (int k = 1; k <= 1000; ++k) node.go(1, linear_mu);
   EXPECT_EQ(node.found().complete[1], 0);
   EXPECT_LT(node.found().work_J_per_m2[1], 0.5);
 }
 
 TEST(Breakdown, OpeningEndsIt) {
-  const SlipWeakening law{.mu_s = 0.6, .mu_k = 0.4, .d_c_m = 2e-6};
-  const auto mu = [](double, double slip) { return 0.6 - 0.2 * std::min(slip / 2e-6, 1.0); };
-  Slipping node(law);
-  for (int k = 1; k <= 1000; ++k) node.go(1, mu);
+  Slipping node(linear);
+  for (int k = 1; k <= 1000; ++k) node.go(1, linear_mu);
   const double work = node.found().work_J_per_m2[1];
-  node.go(1, mu, 0);
-  node.go(1, mu);
+  node.go(1, linear_mu, 0);
+  node.go(1, linear_mu);
   EXPECT_EQ(node.found().work_J_per_m2[1], work);
 }
 

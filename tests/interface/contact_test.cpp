@@ -11,15 +11,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::impedance;
-using test::mass;
-using test::move;
-using test::one_node;
-using test::pull;
-using test::strength_under_way;
-using test::weakening;
-using test::weakening_mu;
+using namespace test;
 
 const ContactModel model{weakening};
 

@@ -6,12 +6,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::impedance;
-using test::move;
-using test::pull;
-using test::resting_node;
-using test::rounding_Pa;
+using namespace test;
 
 TEST(SlipMemory, SlipWeakensForGood) {
   const ContactModel model{SlipWeakening{.mu_s = 0.6, .mu_k = 0.3, .d_c_m = 1e-6}};
@@ -116,19 +111,19 @@ TEST(Strengthening, ASteepLawComesToItsBalance) {
 }
 
 TEST(Intact, InterpolatesBetweenTheKineticCoefficientAndTheLaw) {
-  const ContactModel model{test::weakening};
+  const ContactModel model{weakening};
   for (const double strength_fraction : {0.0, 0.25, 1.0}) {
-    auto s = test::one_node();
+    auto s = one_node();
     s.p_Pa[0] = 1e6;
     s.strength_fraction[0] = strength_fraction;
     start_contact(model, s);
     const double static_Pa = (0.6 + strength_fraction * 0.7) * 1e6;
     EXPECT_NEAR(s.strength_Pa[0], static_Pa, rounding_Pa);
-    const auto mu = [&](double v) { return 0.6 + strength_fraction * (test::weakening_mu(v) - 0.6); };
+    const auto mu = [&](double v) { return 0.6 + strength_fraction * (weakening_mu(v) - 0.6); };
     for (int k = 0; k < 2; ++k) {
       const double rate = s.slip_rate_m_per_s[0];
       pull(model, s, 1.5e6, 1e6);
-      EXPECT_NEAR(s.t_Pa[0], test::strength_under_way(mu, rate, 1.5e6, 1e6), rounding_Pa);
+      EXPECT_NEAR(s.t_Pa[0], strength_under_way(mu, rate, 1.5e6, 1e6), rounding_Pa);
     }
     // A node that sticks regains what is left of its static strength.
     pull(model, s, 0.1e6, 1e6);
@@ -139,7 +134,7 @@ TEST(Intact, InterpolatesBetweenTheKineticCoefficientAndTheLaw) {
 TEST(Intact, LimitsTheCoefficientOfANodeThatIsForced) {
   const ContactModel model{SlipWeakening{.mu_s = 0.6, .mu_k = 0.3, .d_c_m = 1e-6}};
   for (const double strength_fraction : {0.0, 0.5, 1.0}) {
-    auto s = test::one_node();
+    auto s = one_node();
     s.p_Pa[0] = 1e6;
     s.strength_fraction[0] = strength_fraction;
     s.is_time_weakening = true;

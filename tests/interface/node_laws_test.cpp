@@ -12,11 +12,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::for_each_model;
-using test::many_nodes;
-using test::Motion;
-using test::results_at;
+using namespace test;
 
 /// A separate node, in the state of one of many.
 Interface alone(const Interface& s, std::size_t i) {
@@ -39,27 +35,6 @@ std::vector<FrictionLaw> random_laws(const ContactModel& model, std::size_t n, s
         law.parameter(parameter.key) *= share(random);
     } while (!inconsistency(law).text.empty() || strengthens(law) != strengthens(model.law));
   return laws;
-}
-
-TEST(NodeLaws, EqualLawsAreTheOneLawBitByBit) {
-  for_each_model([](const ContactModel& one) {
-    std::mt19937_64 random(2);
-    const std::size_t n = 5 * lanes + 3;
-    auto varying = one;
-    varying.law_per_node = NodeLaws(std::vector<FrictionLaw>(n, one.law));
-    auto a = many_nodes(n, one), b = many_nodes(n, one);
-    start_contact(one, a);
-    start_contact(varying, b);
-    for (int k = 0; k < 20; ++k) {
-      const auto motions = Motion::of(n, random);
-      for (std::size_t i = 0; i < n; ++i) {
-        motions[i].push(a, i);
-        motions[i].push(b, i);
-      }
-      EXPECT_EQ(update_contact(one, dt, a), update_contact(varying, dt, b));
-      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(results_at(a, i), results_at(b, i)) << "node " << i;
-    }
-  });
 }
 
 TEST(NodeLaws, EachNodeFollowsItsOwn) {

@@ -15,9 +15,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::for_each_model;
-using test::results_at;
+using namespace test;
 
 /// Whether b's nodes from b_begin on are a's, bit by bit.
 void expect_same_bits(const Interface& a, const Interface& b, std::size_t b_begin) {
@@ -111,7 +109,7 @@ bool update_one_by_one(const ContactModel& model, double since_last_s, Interface
 
 /// Every 50th node's motion is not a number.
 void push(Interface& s, std::mt19937_64& random) {
-  const auto motions = test::Motion::of(s.size(), random);
+  const auto motions = Motion::of(s.size(), random);
   for (std::size_t i = 0; i < s.size(); ++i) {
     motions[i].push(s, i);
     if (i % 50 == 49) (i % 100 == 49 ? s.v_x_m_per_s : s.v_y_m_per_s)[i] = std::nan("");
@@ -119,7 +117,7 @@ void push(Interface& s, std::mt19937_64& random) {
 }
 
 Interface nodes(std::size_t n, const ContactModel& model) {
-  auto s = test::many_nodes(n, model);
+  auto s = many_nodes(n, model);
   for (std::size_t i = 0; i < n; i += 10) s.tangential_mass_ratio[i] = 1.25;
   start_contact(model, s);
   return s;

@@ -9,13 +9,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::impedance;
-using test::pull;
-using test::resting_node;
-using test::rounding_Pa;
-using test::weakening;
-using test::weakening_mu;
+using namespace test;
 
 ContactModel with(const FrictionLaw& law) {
   return {law, {}, ContactAlgorithm::predictor_corrector};
@@ -26,10 +20,10 @@ TEST(PredictorCorrector, ALandingNodeIsPutOntoThePlane) {
   auto s = resting_node(model, 0);
   s.initial_gap_m[0] = 0.3e-6;
   s.u_y_m[0] = -0.1e-6;
-  test::move(model, s, 0.5, -0.19);  // stops just above
+  move(model, s, 0.5, -0.19);  // stops just above
   EXPECT_EQ(s.v_y_m_per_s[0], -0.19);
   EXPECT_EQ(s.u_y_m[0], -0.1e-6);
-  test::move(model, s, 0.5, -0.21);
+  move(model, s, 0.5, -0.21);
   EXPECT_EQ(s.u_y_m[0] + dt * s.v_y_m_per_s[0], -0.3e-6);  // exactly
   EXPECT_EQ(s.v_y_m_per_s[0], 0);
   EXPECT_EQ(s.p_Pa[0], 0);
@@ -99,7 +93,7 @@ TEST(PredictorCorrector, WorksWithEachLawAndForm) {
         const auto mu = [&](double v) { return friction_coefficient(law, v, 0); };
         const bool at_once = algorithm == ContactAlgorithm::direct && relaxed != Relaxed::strength;
         const double strength =
-            at_once ? test::strength_under_way(mu, 0, drag_Pa, 1e6) : static_coefficient(law) * 1e6;
+            at_once ? strength_under_way(mu, 0, drag_Pa, 1e6) : static_coefficient(law) * 1e6;
         const double v = (drag_Pa - strength) / impedance;
         EXPECT_NEAR(s.t_Pa[0], strength, rounding_Pa);
         EXPECT_NEAR(s.v_x_m_per_s[0], v, 1e-14);
@@ -112,7 +106,7 @@ TEST(PredictorCorrector, ObeysItsConditionsWhateverTheTrial) {
   const int n = 10000;
   Interface s(n);
   for (int i = 0; i < n; ++i) {
-    s.mass_per_length_kg_m2[i] = test::mass * (1.5 + random());
+    s.mass_per_length_kg_m2[i] = mass * (1.5 + random());
     s.locked[i] = i % 2 == 1;
     s.initial_gap_m[i] = i % 2 == 1 ? 0 : 0.5e-6 * (1 + random());
     s.v_x_m_per_s[i] = random();

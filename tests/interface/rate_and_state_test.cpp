@@ -13,8 +13,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::impedance;
+using namespace test;
 
 constexpr double p_Pa = 5e6;
 
@@ -100,13 +99,13 @@ TEST(RateAndState, ANodeWithoutFrictionGoesOn) {
   law.b = 10;
   const ContactModel model{law};
   auto s = Interface(1, model.law.states());
-  s.mass_per_length_kg_m2[0] = test::mass;
+  s.mass_per_length_kg_m2[0] = mass;
   s.p_Pa[0] = 5e6;
   s.t_Pa[0] = 2.65e6;
   start_contact(model, s);
   s.law_states[0][0] = -100;
   for (int n = 0; n < 100; ++n) {
-    test::pull(model, s, s.slip_rate_m_per_s[0] * impedance + 1e6, 5e6);
+    pull(model, s, s.slip_rate_m_per_s[0] * impedance + 1e6, 5e6);
     EXPECT_NEAR(s.t_Pa[0], 0, 1e-6);
     EXPECT_NEAR(s.slip_rate_m_per_s[0], (n + 1) * 1e6 / impedance, 1e-9 * (n + 1));
   }
@@ -142,7 +141,7 @@ TYPED_TEST(RateAndStateLaws, BalanceTheNode) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> power(-12, 1), part(-1, 1);
   Interface s(101, model.law.states());
-  std::ranges::fill(s.mass_per_length_kg_m2, test::mass);
+  std::ranges::fill(s.mass_per_length_kg_m2, mass);
   std::ranges::fill(s.p_Pa, p_Pa);
   for (auto& t : s.t_Pa) t = 2.5e6;
   start_contact(model, s);

@@ -8,12 +8,7 @@
 namespace slipfront::interface {
 namespace {
 
-using test::dt;
-using test::move;
-using test::pull;
-using test::resting_node;
-using test::rounding_Pa;
-using test::weakening;
+using namespace test;
 
 TEST(Regularisation, RateAddsSlipRateAndTime) {
   EXPECT_DOUBLE_EQ(relaxation_rate_per_s({Relaxed::strength, 2e-6, 0.5, 1e-6}, 1.5), 2e6);
@@ -30,7 +25,7 @@ TEST(Regularisation, AStepOfPressureIsForgottenExponentially) {
         const ContactModel model{Coulomb{.mu = 0.5}, {.relaxed = relaxed, .time_s = t_star}};
         auto s = resting_node(model, before);
         EXPECT_DOUBLE_EQ(s.relaxed_Pa[0], relaxed == Relaxed::strength ? 0.5e6 : 1e6);
-        const double Z = test::mass / step;
+        const double Z = mass / step;
         for (int k = 1; k <= 20; ++k) {
           s.v_x_m_per_s[0] = 2e6 / Z;
           s.v_y_m_per_s[0] = -after / Z;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "interface/friction/coulomb.hpp"
@@ -74,6 +76,23 @@ TEST_P(AMachine, GoesBackAsItCame) {
   way.stepper.reverse(way.recorder);
   way.advance(50);
   EXPECT_LT(test::max_difference(way.stepper.u_m(), flying.u_m), 1e-12);
+}
+
+TEST(Machine, LetsABlockSwingOnItsSpring) {
+  constexpr double K_Pa = 4e6;
+  const auto mesh = mesh::make_plate(support::plate_of(0.02, 0.01, 1e-3));
+  const solid::Material material{.stiffness_damping_s = 0};
+  const double omega = std::sqrt(K_Pa / (material.density_kg_per_m3 * 0.02 * 0.01));
+  solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+  std::ranges::fill(u.y, 1e-3);  // in the air
+  std::ranges::fill(v.x, 2.0);   // beyond the machine by 1 m/s
+  const std::vector<BodySource> body = {{mesh, material, nullptr, nullptr, {K_Pa, rigid}}};
+  UnderWay way({body, {interface::Coulomb{0}}, support::one_substep()}, support::in_flight(mesh, u, v), 1);
+  way.advance_to(0.8 * 2 * std::numbers::pi / omega);
+  const double end_s = way.stepper.time_s();
+  // The spring is at one edge of the block, which is a spring, too: K H/(G W), 1/1000 of this one.
+  for (const double u_x_m : way.stepper.u_m().x)
+    EXPECT_NEAR(u_x_m - end_s, std::sin(omega * end_s) / omega, 5e-3 / omega);
 }
 
 TEST(Machine, ASpringTakesItsShareOfTheStableStep) {

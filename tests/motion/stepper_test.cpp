@@ -25,6 +25,7 @@ using support::one_substep;
 using support::paper_law;
 using support::tiny_plate;
 using support::touches;
+using support::UnderWay;
 
 const solid::Material undamped{.stiffness_damping_s = 0};
 
@@ -33,60 +34,24 @@ statics::Equilibrium random_flight(const mesh::Mesh& mesh, double amplitude_m, d
   return support::random_flight(mesh, 11, amplitude_m, 1, lift_m);
 }
 
-/// 1/2 v M v + 1/2 u K u' with v at the half step between the displacements u and u'.
-double leapfrog_energy(const solid::Operator& plate, const solid::Field& u, const solid::Field& v,
-                       const solid::Field& u_next) {
-  // The energy's polarisation: u K u' = ((u + u') K (u + u') - (u - u') K (u - u')) / 4.
-  solid::Field sum = u, difference = u;
-  for (std::size_t n = 0; n < u.size(); ++n) {
-    sum.x[n] += u_next.x[n];
-    sum.y[n] += u_next.y[n];
-    difference.x[n] -= u_next.x[n];
-    difference.y[n] -= u_next.y[n];
-  }
-  return solid::kinetic_energy_J_per_m(plate, v) +
-         0.25 * (solid::strain_energy_J_per_m(plate, sum) - solid::strain_energy_J_per_m(plate, difference));
-}
-
 class FreeFlight : public ::testing::TestWithParam<Corner> {};
 INSTANTIATE_TEST_SUITE_P(Corners, FreeFlight, ::testing::Values(Corner::relief, Corner::fillet),
                          [](const auto& corner) { return support::name_of(corner.param); });
-
-TEST_P(FreeFlight, UndampedFlightConservesTheLeapfrogEnergy) {
-  const auto mesh = tiny_plate(GetParam());
-  Stepper stepper(mesh, undamped, paper_law, one_substep());
-  const auto e = random_flight(mesh, 1e-6, 50e-6);
-  stepper.start(e, 1);
-  Recorder recorder(e, mu_s, 0);
-  double first = 0, worst = 0;
-  for (int step = 0; step < 5000; ++step) {
-    const solid::Field before = stepper.u_m();
-    stepper.advance(recorder);
-    ASSERT_FALSE(touches(stepper));
-    const double energy = leapfrog_energy(stepper.plate(), before, stepper.v_m_per_s(), stepper.u_m());
-    if (step == 0) first = energy;
-    worst = std::max(worst, std::abs(energy / first - 1));
-  }
-  EXPECT_GT(first, 0);
-  EXPECT_LE(worst, 1e-12);  // exactly conserved but for rounding
-}
 
 TEST_P(FreeFlight, TheStableStepIsSharp) {
   // The step is a lower bound within 0.05 %.
   const auto mesh = tiny_plate(GetParam());
   for (const double damping_s : {0.0, 1e-6}) {
     for (const double factor : {0.999, 1.005}) {
-      Stepper stepper(mesh, {.stiffness_damping_s = damping_s}, paper_law, one_substep(factor));
-      const auto e = random_flight(mesh, 1e-6, 1e-2);
-      stepper.start(e, 1);
-      Recorder recorder(e, mu_s, 0);
+      UnderWay way({mesh, {.stiffness_damping_s = damping_s}, paper_law, one_substep(factor)},
+                   random_flight(mesh, 1e-6, 1e-2), 1);
       // Below the limit the energy taken half a step apart swings up to 1 / (1 - factor^2) = 500 times its
       // mean.
-      const double limit = 1e3 * stepper.energy_J_per_m();
+      const double limit = 1e3 * way.stepper.energy_J_per_m();
       bool grows = false;
       for (int step = 0; step < 2000 && !grows; ++step) {
-        stepper.advance(recorder);
-        grows = stepper.energy_J_per_m() > limit;
+        way.advance(1);
+        grows = way.stepper.energy_J_per_m() > limit;
       }
       EXPECT_EQ(grows, factor > 1) << damping_s << " " << factor;
     }
@@ -100,7 +65,6 @@ TEST(SubcycledFlight, EnergyStaysBounded) {
   for (const auto corner : {Corner::relief, Corner::fillet}) {
     SCOPED_TRACE(support::name_of(corner));
     const auto mesh = tiny_plate(corner);
-    Stepper stepper(mesh, undamped, paper_law, {});
     solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
     std::ranges::fill(u.y, 0.01);
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
@@ -108,15 +72,14 @@ TEST(SubcycledFlight, EnergyStaysBounded) {
       v.x[n] = depth;
       v.y[n] = 0.3 * depth * std::cos(200 * mesh.x_m[n]);
     }
-    const auto smooth = in_flight(mesh, u, v);
-    stepper.start(smooth, 1);
-    Recorder recorder(smooth, mu_s, 0);
+    UnderWay way({mesh, undamped, paper_law, {}}, in_flight(mesh, u, v), 1);
+    auto& stepper = way.stepper;
     const double lowest = std::numbers::pi * solid::longitudinal_speed_m_per_s({}) / (2 * 0.01);
     const double swing = lowest * stepper.step_s() / 2;
     const double before = stepper.energy_J_per_m();
     double least = before, most = before;
     for (int step = 0; step < 20000; ++step) {
-      stepper.advance(recorder);
+      way.advance(1);
       if (step % 7 != 0) continue;
       least = std::min(least, stepper.energy_J_per_m());
       most = std::max(most, stepper.energy_J_per_m());
@@ -129,14 +92,13 @@ TEST(SubcycledFlight, EnergyStaysBounded) {
     const auto largest_of = [&](int n_steps) {
       double largest = 0;
       for (int step = 0; step < n_steps; ++step) {
-        stepper.advance(recorder);
-        if (step % 3 != 0) continue;
-        largest = std::max(largest, stepper.energy_J_per_m());
+        way.advance(1);
+        if (step % 3 == 0) largest = std::max(largest, stepper.energy_J_per_m());
       }
       return largest;
     };
     const double early = largest_of(1000);
-    for (int step = 0; step < 8000; ++step) stepper.advance(recorder);
+    way.advance(8000);
     EXPECT_LT(largest_of(1000), early);  // the early swing, of phases yet in order, is never reached again
     ASSERT_FALSE(touches(stepper));
   }
@@ -166,13 +128,11 @@ class Substeps : public ::testing::TestWithParam<int> {
         .shear_by(shear_m);
   }
   /// After 500 steps.
-  Stepper moved(const mesh::Mesh& mesh, const statics::Equilibrium& e, double speed_m_per_s) const {
-    Stepper stepper(mesh, material_, paper_law, {.interface_substeps = GetParam()});
-    stepper.start(e, speed_m_per_s);
-    Recorder recorder(e, mu_s, 0);
-    for (int step = 0; step < 500; ++step) stepper.advance(recorder);
-    EXPECT_TRUE(speed_m_per_s > 0 || recorder.record_until(0).onsets.empty());
-    return stepper;
+  UnderWay moved(const mesh::Mesh& mesh, const statics::Equilibrium& e, double speed_m_per_s) const {
+    UnderWay way({mesh, material_, paper_law, {.interface_substeps = GetParam()}}, e, speed_m_per_s);
+    way.advance(500);
+    EXPECT_TRUE(speed_m_per_s > 0 || way.n_onsets() == 0);
+    return way;
   }
 };
 INSTANTIATE_TEST_SUITE_P(OneAndMany, Substeps, ::testing::Values(1, 18));
@@ -182,7 +142,7 @@ TEST_P(Substeps, APlateAtRestStaysAtRest) {
   const auto e = state(mesh, 0.02e-3);
   ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::slip), 0);
   const double p_max = std::ranges::max(e.tractions.p_s_Pa);
-  const auto stepper = moved(mesh, e, 0);
+  const auto [stepper, recorder] = moved(mesh, e, 0);
   const auto& s = stepper.interface_state();
   // The static solution's residual (1e-11 of the forces) is all that moves.
   for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
@@ -198,7 +158,7 @@ TEST_P(Substeps, StuckPlateFollowsTheTop) {
   const auto e = state(mesh, 0.01e-3);
   ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::stick), 41);
   const double speed = 1e-3;
-  const auto stepper = moved(mesh, e, speed);
+  const auto [stepper, recorder] = moved(mesh, e, speed);
   auto expected = e.u_m;
   for (std::size_t n = 0; n < expected.size(); ++n) {
     expected.x[n] += speed * stepper.time_s() * e.u_per_shear.x[n];
@@ -210,40 +170,6 @@ TEST_P(Substeps, StuckPlateFollowsTheTop) {
   const double lag_s = material_.stiffness_damping_s + (GetParam() > 1 ? stepper.step_s() : 0);
   EXPECT_LE(max_difference(stepper.u_m(), expected), speed * lag_s);
   EXPECT_GT(speed * stepper.time_s(), 200 * speed * lag_s);
-}
-
-TEST(Stepper, TriggerWorkIsForceTimesPath) {
-  const auto mesh = tiny_plate(Corner::none);
-  Stepper stepper(mesh, undamped, paper_law, one_substep(0.2));
-  // From rest in the air, so that the trigger's work is all the energy there is.
-  solid::Field u(mesh.n_nodes());
-  std::ranges::fill(u.y, 1e-3);
-  const auto e = in_flight(mesh, u, solid::Field(mesh.n_nodes()));
-  const interface::Trigger trigger { .ramp_s = 10e-6, .duration_s = 30e-6 };
-  std::vector<double> force(mesh.interface_nodes.size());
-  for (std::size_t k = 0; k < force.size(); ++k) force[k] = 100.0 * static_cast<double>(k + 1);
-  stepper.start(e, 0, {.trigger_force_N_per_m = force, .trigger = trigger});
-  Recorder recorder(e, mu_s, 0);
-  double work = 0;
-  while (stepper.time_s() < 40e-6) {
-    const double factor = interface::trigger_factor(trigger, stepper.time_s());
-    const auto before = stepper.v_m_per_s().x;
-    stepper.advance(recorder);
-    for (std::size_t k = 0; k < force.size(); ++k) {
-      const auto n = mesh.interface_nodes[k];
-      work += factor * force[k] * 0.5 * (before[n] + stepper.v_m_per_s().x[n]) * stepper.step_s();
-    }
-  }
-  ASSERT_FALSE(touches(stepper));
-  EXPECT_GT(work, 0);
-  EXPECT_NEAR(stepper.energies().trigger_work / work, 1, 1e-12);
-  // The energy is taken half a step apart.
-  EXPECT_NEAR(stepper.energy_J_per_m() / work, 1, 0.02);
-  // A new start forgets it.
-  stepper.start(e, 0);
-  EXPECT_EQ(stepper.energies().trigger_work, 0);
-  stepper.advance(recorder);
-  EXPECT_EQ(stepper.energies().trigger_work, 0);
 }
 
 /// Rows of bands that threads and steps of one sweep share; relief and fillet make the first band irregular.
@@ -306,14 +232,12 @@ TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
   solid::Field u[2], v[2];
   for (const int k : {0, 1}) {
     const auto precision = k == 0 ? Precision::double_precision : Precision::single_precision;
-    Stepper stepper(mesh, {}, gentle_law, {.precision = precision, .interface_substeps = substeps});
-    stepper.start(e, 1);
-    balance[k] = {stepper.energies()};
-    Recorder recorder(e, mu_s, 0);
-    EXPECT_EQ(stepper.advance(recorder, n_steps, {}), n_steps);
-    balance[k].look(stepper.energies());
-    u[k] = stepper.u_m();
-    v[k] = stepper.v_m_per_s();
+    UnderWay way({mesh, {}, gentle_law, {.precision = precision, .interface_substeps = substeps}}, e, 1);
+    balance[k] = {way.stepper.energies()};
+    EXPECT_EQ(way.stepper.advance(way.recorder, n_steps, {}), n_steps);
+    balance[k].look(way.stepper.energies());
+    u[k] = way.stepper.u_m();
+    v[k] = way.stepper.v_m_per_s();
   }
   // Each step rounds u and v to 6e-8 of themselves, u at some 10 um, v at some 1 m/s; what is rounded adds up
   // over the steps, and forces turn errors of u into errors of v by 1/dt.
@@ -327,13 +251,24 @@ TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
   EXPECT_LE(balance[1].worst_J, n_steps * 10 * eps * balance[0].start.stored());
 }
 
+TEST(Stepper, ANewStartForgetsTheWorks) {
+  const auto mesh = tiny_plate(Corner::none);
+  const auto e = statics::Statics(mesh, {}, support::tilted, mu_s).shear_to(0.9);
+  UnderWay way({mesh, {}, gentle_law, {}}, e, 0.2, support::left_trigger(e, mesh, mu_s));
+  way.advance(40);
+  const auto works = way.stepper.energies();
+  for (const auto work : {works.trigger_work, works.far_edge_work, works.friction_work, works.damping_work})
+    EXPECT_NE(work, 0);
+  way.stepper.start(e, 0);
+  EXPECT_EQ(way.stepper.energies().work(), 0);
+}
+
 TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
   const auto mesh = tiny_plate(Corner::none);
   const solid::Material material;
   const auto e = statics::Statics(mesh, material, support::tilted, mu_s).shear_to(0.5);
-  Stepper stepper(mesh, material, paper_law, {});
-  stepper.start(e, 0);
-  Recorder recorder(e, mu_s, 0);
+  UnderWay way({mesh, material, paper_law, {}}, e, 0);
+  auto& [stepper, recorder] = way;
   record::History history;
   stepper.advance(recorder, &history);
   stepper.advance(recorder);

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -62,11 +61,6 @@ TEST_F(HistoryFiles, TextsOfAnyLengthFitIntoTheHead) {
     EXPECT_THAT(read(folder_ / name, "y_m").values, ElementsAre(2, 4));
     EXPECT_THAT(read(folder_ / name, "u_y_m").values, ElementsAre(3, 4));
   }
-}
-
-TEST_F(HistoryFiles, EqualHistoriesMakeEqualFiles) {
-  for (const char* name : {"a.h5", "b.h5"}) write_history(folder_ / name, made_history(70, 50));
-  EXPECT_EQ(test::read_file(folder_ / "a.h5"), test::read_file(folder_ / "b.h5"));
 }
 
 TEST_F(HistoryFiles, ReadsBackBitwise) {

@@ -10,7 +10,7 @@
 #include "cases.hpp"
 #include "examples/downstream/slip_limit.hpp"
 #include "motion/observers/interval_observer.hpp"
-#include "run/session.hpp"
+#include "sessions.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::run {
@@ -83,29 +83,21 @@ class Counter final : public motion::IntervalObserver {
 TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
   auto config = coarse_case(interface::EventKind::left);
   config.time.quiet_s = 1;
-  const auto run = [&](const std::filesystem::path& dir, std::int64_t stop_at, bool goes_on,
+  const auto run = [&](const std::filesystem::path& dir, const SessionHooks& hooks, bool goes_on,
                        const std::function<motion::Observers()>& observers) {
     results::ResultFolder folder(dir, run_work);
-    std::int64_t at = 0;
-    const SessionHooks hooks{[&](const char* part, std::int64_t step, std::int64_t) {
-                               at = std::string(part) == "event" ? step : 0;
-                             },
-                             [&] { return at >= stop_at ? Request::stop : Request::none; },
-                             [](const std::string&) {}};
-    SessionOptions options;
-    options.threads = 2;
+    auto options = test::with_threads(2);
     options.observers = observers;
     return goes_on ? resume(folder, nullptr, options, hooks) : run_into(folder, config, options, hooks);
   };
-  constexpr std::int64_t never = 1'000'000'000;
   const test::TemporaryFolder plain, observed;
-  const auto expected = run(plain.path(), never, false, {});
+  const auto expected = run(plain.path(), test::undisturbed, false, {});
   Counter::Seen seen;
   const auto observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
-  run(observed.path(), 50, false, observers);
+  run(observed.path(), test::stopping_at("event", 50), false, observers);
   EXPECT_EQ(seen.ends, 1);
   EXPECT_EQ(seen.steps, 50);
-  const auto result = run(observed.path(), never, true, observers);
+  const auto result = run(observed.path(), test::undisturbed, true, observers);
   EXPECT_EQ(seen.ends, 1);  // of the second session
   EXPECT_EQ(seen.steps, expected.result.event.steps);
   EXPECT_EQ(seen.updates, seen.steps * config.time.interface_substeps);
@@ -125,10 +117,7 @@ TEST(Observers, ACheckpointIsOfTheObserversThatKeptIt) {
   Counter::Seen seen;
   SessionOptions options;
   options.observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
-  std::int64_t at = 0;
-  const SessionHooks hooks{[&](const char*, std::int64_t step, std::int64_t) { at = step; },
-                           [&] { return at >= 50 ? Request::stop : Request::none; },
-                           [](const std::string&) {}};
+  const auto hooks = test::stopping_at("event", 50);
   results::ResultFolder folder(dir.path(), run_work);
   run_into(folder, config, options, hooks);
   options.observers = {};

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -21,7 +20,6 @@
 #include "run/choices.hpp"
 #include "run/sequence_session.hpp"
 #include "sessions.hpp"
-#include "support/files.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -64,6 +62,16 @@ input::Case rate_and_state_case(int max_events) {
   return config;
 }
 
+/// A block that a soft pusher moves under a dead load.
+input::Case pushed_block(int max_events) {
+  auto config = sequence_case(max_events, 0.5);
+  test::law(config).mu_s = 0.7;
+  config.plate.corner = mesh::Corner::none;
+  config.loading.mean_pressure_Pa = 5e6;
+  config.machine = {2e9, 0, {8e-3, 16e-3}};
+  return config;
+}
+
 /// Computes the next event. @return the state in which it began
 const InitialState* run_next(Sequence& sequence, const input::Case& config) {
   const auto* initial = sequence.next();
@@ -71,19 +79,39 @@ const InitialState* run_next(Sequence& sequence, const input::Case& config) {
   return initial;
 }
 
+/// Computes all events.
+void run_all(Sequence& sequence, const input::Case& config) {
+  while (sequence.end().empty()) run_next(sequence, config);
+}
+
+double largest_term(const std::vector<LoadingRow>& rows) {
+  double largest = 0;
+  for (const auto& row : rows)
+    for (const auto& term : record::energy_terms)
+      largest = std::max(largest, std::abs(row.energies.*term.member));
+  return largest;
+}
+
+/// Work of the edge, without what the tilt has stored.
+double largest_work(const std::vector<LoadingRow>& rows) {
+  return std::abs(std::ranges::max_element(rows, {}, [](const LoadingRow& row) {
+                    return std::abs(row.energies.far_edge_work);
+                  })->energies.far_edge_work);
+}
+
+void expect_balance(const std::vector<LoadingRow>& rows, double tolerance_J_per_m) {
+  for (const auto& row : rows) EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), tolerance_J_per_m);
+}
+
 TEST(Sequence, EnergiesOfAllPhasesBalance) {
   auto config = sequence_case(6);
   config.time.interface_substeps =
       1;  // energies of sub-cycled motion are bounded from below but for coupling
   Sequence sequence(config, test::go_on);
-  while (sequence.end().empty()) run_next(sequence, config);
+  run_all(sequence, config);
   const auto& rows = sequence.loading();
   ASSERT_EQ(rows.size(), 1 + 3 * 6);
-  double largest = 0;
-  for (const auto& row : rows)
-    for (const auto& term : record::energy_terms)
-      largest = std::max(largest, std::abs(row.energies.*term.member));
-  for (const auto& row : rows) EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), 1e-11 * largest);
+  expect_balance(rows, 1e-11 * largest_term(rows));
   for (std::size_t k = 3; k < rows.size(); k += 3) {
     ASSERT_EQ(rows[k].phase, LoadingPhase::at_rest);
     // An equilibrium has the least energy of all motions with this interface.
@@ -152,7 +180,7 @@ TEST(Sequence, EndsByGlobalSliding) {
   auto config = sequence_case(20);
   config.sequence.to_global_sliding = true;
   Sequence sequence(config, test::go_on);
-  while (sequence.end().empty()) run_next(sequence, config);
+  run_all(sequence, config);
   const auto& events = sequence.events();
   ASSERT_LT(events.size(), 20U);
   EXPECT_EQ(events.back().is_global, 1);
@@ -173,7 +201,7 @@ TEST(Sequence, LoadsToTheTimeAtWhichItEnds) {
   const auto& last = sequence.loading().back();
   EXPECT_EQ(last.phase, LoadingPhase::loaded);
   EXPECT_DOUBLE_EQ(last.time_s, second_s - 1);
-  EXPECT_LT(std::abs(imbalance_J_per_m(last, sequence.loading().front())), 1e-11 * last.energies.strain);
+  expect_balance(sequence.loading(), 1e-11 * last.energies.strain);
 }
 
 TEST(Sequence, RowsOfEventsTellWhatSlipped) {
@@ -207,11 +235,8 @@ TEST(Sequence, RowsOfEventsTellWhatSlipped) {
 }
 
 TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
-  auto config = sequence_case(200, 0.5);
-  test::law(config).mu_s = 0.7;
-  config.plate.corner = mesh::Corner::none;
-  config.machine.pusher = {8e-3, 16e-3};
-  config.loading.mean_pressure_Pa = 5e6;
+  auto config = pushed_block(200);
+  config.machine = {.pusher = config.machine.pusher};  // that does not yield
   config.sequence.to_global_sliding = true;
   Sequence sequence(config, test::go_on);
   while (sequence.end().empty()) {
@@ -240,11 +265,46 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
     longest_m = std::max(longest_m, e.length_m);
   }
   EXPECT_GT(n_longer, 5);
+  expect_balance(sequence.loading(), 1e-11 * largest_term(sequence.loading()));
+}
+
+TEST(Sequence, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
+  for (const int substeps : {1, 6}) {
+    auto config = pushed_block(6);
+    config.time.interface_substeps = substeps;
+    Sequence sequence(config, test::go_on);
+    run_all(sequence, config);
+    const auto& rows = sequence.loading();
+    ASSERT_EQ(rows.size(), 1 + 3 * 6U);
+    const double normal = rows.front().normal_force_N_per_m;
+    EXPECT_NEAR(normal, 5e6 * config.plate.width_m, 1e-9 * normal);
+    expect_balance(rows, 1e-11 * largest_term(rows));
+    for (const auto& row : rows) {
+      if (row.phase == LoadingPhase::slip_ends) continue;  // waves
+      EXPECT_NEAR(row.normal_force_N_per_m, normal, 1e-10 * normal);
+      if (row.phase == LoadingPhase::tilted) continue;
+      EXPECT_TRUE(row.shear_height_m > 8e-3 && row.shear_height_m < 16e-3);
+      EXPECT_NEAR(row.pressure_moment_N - rows.front().pressure_moment_N,
+                  row.shear_force_N_per_m * row.shear_height_m, 1e-10 * normal * config.plate.width_m);
+    }
+    for (std::size_t k = 3; k < rows.size(); k += 3) {
+      ASSERT_EQ(rows[k].phase, LoadingPhase::at_rest);
+      EXPECT_TRUE(substeps > 1 || rows[k].wave_loss_J_per_m > rows[k - 1].wave_loss_J_per_m);
+      EXPECT_LT(rows[k].energies.machine, rows[k - 2].energies.machine);  // the spring shortens in an event
+    }
+    // All of the shear force comes through the spring.
+    EXPECT_GT(rows.back().energies.machine, 0.1 * std::pow(rows.back().shear_force_N_per_m, 2) / (2 * 2e9));
+  }
+}
+
+TEST(Sequence, OnAMachineAboveKeepsItsBooks) {
+  auto config = pushed_block(4);
+  config.machine = {1e10, 2e10};
+  Sequence sequence(config, test::go_on);
+  run_all(sequence, config);
   const auto& rows = sequence.loading();
-  double largest = 0;
-  for (const auto& term : record::energy_terms)
-    largest = std::max(largest, std::abs(rows.back().energies.*term.member));
-  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-11 * largest);
+  expect_balance(rows, 1e-11 * largest_term(rows));
+  EXPECT_NE(rows.back().normal_force_N_per_m, rows.front().normal_force_N_per_m);
 }
 
 TEST(Sequence, APusherNeedsNodes) {
@@ -304,16 +364,13 @@ FinishedSequence start_sequence(
     const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed,
     const EventDone& done = [](std::size_t, const record::SequenceEvent&) {}) {
   results::ResultFolder folder(dir, run_work);
-  SessionOptions options;
-  options.threads = 1;
-  return run_sequence_into(folder, config, options, hooks, done);
+  return run_sequence_into(folder, config, test::with_threads(1), hooks, done);
 }
 
 FinishedSequence resume_sequence_in(const fs::path& dir, const SessionHooks& hooks = undisturbed) {
   results::ResultFolder folder(dir, run_work);
-  SessionOptions options;
-  options.threads = 1;
-  return resume_sequence(folder, nullptr, options, hooks, [](std::size_t, const record::SequenceEvent&) {});
+  return resume_sequence(folder, nullptr, test::with_threads(1), hooks,
+                         [](std::size_t, const record::SequenceEvent&) {});
 }
 
 /// The files of all events and of the loading, which do not depend on when they were written.
@@ -327,38 +384,74 @@ std::map<std::string, std::string> tables_in(const fs::path& dir) {
   return files;
 }
 
-/// That a sequence of three events goes on as if it had never stopped. @param n_tables  of all its files
-void expect_same_wherever_stopped(const input::Case& config, std::size_t n_tables) {
-  const test::TemporaryFolder folder;
-  start_sequence(folder / "whole", config);
-  const auto expected = tables_in(folder / "whole");
-  ASSERT_EQ(expected.size(), n_tables);
-  for (const auto& [part, step] : {std::pair{"event 1", 1}, {"event 1", 200}, {"event 3", 150}}) {
-    const auto dir = folder / fmt::format("stopped in {} at {}", part, step);
-    EXPECT_THROW(start_sequence(dir, config, stopping_at(part, step)), Interrupted);
-    EXPECT_FALSE(is_complete(dir));
-    resume_sequence_in(dir);
-    EXPECT_TRUE(is_complete(dir));
-    EXPECT_EQ(tables_in(dir), expected) << part << " at " << step;
+/// Ends as by a signal that gives no time.
+struct Killed {};
+
+/// Hooks that throw an error where an event has come to a step.
+template <class Error>
+SessionHooks failing_in(const std::string& event, std::int64_t fails_at, Error error) {
+  SessionHooks hooks = undisturbed;
+  hooks.progress = [=](const char* part, std::int64_t step, std::int64_t) {
+    if (part == event && step >= fails_at) throw error;
+  };
+  return hooks;
+}
+
+class SequenceInAFolder : public test::InFolder {
+ protected:
+  const fs::path dir_ = folder_ / "out", unfinished_ = dir_ / "unfinished";
+
+  void stop(const input::Case& config, const char* part, std::int64_t step) {
+    EXPECT_THROW(start_sequence(dir_, config, stopping_at(part, step)), Interrupted);
+    EXPECT_FALSE(is_complete(dir_));
   }
-}
+  void expect_refused(const char* told) const {
+    EXPECT_THAT(error_of([&] { resume_sequence_in(dir_); }), HasSubstr(told));
+  }
+  void finish() const {
+    resume_sequence_in(dir_);
+    EXPECT_TRUE(is_complete(dir_));
+  }
+  /// That it goes on as if it had never stopped.
+  void expect_same_as_whole(const input::Case& config) const {
+    finish();
+    start_sequence(folder_ / "whole", config);
+    EXPECT_EQ(tables_in(dir_), tables_in(folder_ / "whole"));
+  }
+};
 
-TEST(SequenceInAFolder, IsTheSameWhereverItWasStopped) {
-  expect_same_wherever_stopped(sequence_case(3), 3 + 3 * 6);
-}
+struct Stopped {
+  const char* name;
+  input::Case config;
+  std::size_t n_tables;  ///< of all its files
+};
 
-TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedWhileItHeals) {
-  auto config = sequence_case(3);
-  config.plate.corner = mesh::Corner::none;  // where edges slip at rest
-  config.loading.mean_pressure_Pa = 5e6;
-  config.material.stiffness_damping_s = 2e-6;
-  config.friction = interface::SlipWeakeningHealing { .mu_s = 0.5, .mu_k = 0.45, .d_c_m = 2e-6 };
-  config.sequence.healing_per_e_fold = 0.02;
-  expect_same_wherever_stopped(config, 3 + 3 * 7);  // each event has its friction.csv
-}
-
-TEST(SequenceInAFolder, IsTheSameWhereverItWasStoppedUnderALawWithAState) {
-  expect_same_wherever_stopped(rate_and_state_case(3), 3 + 3 * 7);  // and slow slip before it
+TEST(Sequences, AreTheSameWhereverTheyWereStopped) {
+  auto healing = sequence_case(3);
+  healing.plate.corner = mesh::Corner::none;  // where edges slip at rest
+  healing.loading.mean_pressure_Pa = 5e6;
+  healing.material.stiffness_damping_s = 2e-6;
+  healing.friction = interface::SlipWeakeningHealing { .mu_s = 0.5, .mu_k = 0.45, .d_c_m = 2e-6 };
+  healing.sequence.healing_per_e_fold = 0.02;
+  for (const auto& [name, config, n_tables] :
+       {Stopped{"plain", sequence_case(3), 3 + 3 * 6},
+        {"healing", healing, 3 + 3 * 7},                          // each event has its friction.csv
+        {"law with a state", rate_and_state_case(3), 3 + 3 * 7},  // and slow slip before it
+        {"pushed by a spring", pushed_block(3), 3 + 3 * 6}}) {
+    SCOPED_TRACE(name);
+    const test::TemporaryFolder folder;
+    start_sequence(folder / "whole", config);
+    const auto expected = tables_in(folder / "whole");
+    ASSERT_EQ(expected.size(), n_tables);
+    for (const auto& [part, step] : {std::pair{"event 1", 1}, {"event 1", 200}, {"event 3", 150}}) {
+      const auto dir = folder / fmt::format("stopped in {} at {}", part, step);
+      EXPECT_THROW(start_sequence(dir, config, stopping_at(part, step)), Interrupted);
+      EXPECT_FALSE(is_complete(dir));
+      resume_sequence_in(dir);
+      EXPECT_TRUE(is_complete(dir));
+      EXPECT_EQ(tables_in(dir), expected) << part << " at " << step;
+    }
+  }
 }
 
 TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
@@ -386,8 +479,7 @@ TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
 }
 
 /// Friction that strengthens: rows come until the time at which it ends.
-TEST(SequenceInAFolder, LongSlowSlipTellsHowFarItHasCome) {
-  const test::TemporaryFolder folder;
+TEST_F(SequenceInAFolder, LongSlowSlipTellsHowFarItHasCome) {
   auto config = rate_and_state_case(2);
   config.plate = {.width_m = 0.01, .height_m = 5e-3, .element_size_m = 1e-3, .corner = mesh::Corner::none};
   config.loading.edge_margin_m = 1e-3;
@@ -396,108 +488,76 @@ TEST(SequenceInAFolder, LongSlowSlipTellsHowFarItHasCome) {
   std::vector<std::string> notes;
   SessionHooks hooks = undisturbed;
   hooks.note = [&](const std::string& note) { notes.push_back(note); };
-  start_sequence(folder / "out", config, hooks);
+  start_sequence(dir_, config, hooks);
   EXPECT_THAT(notes, ::testing::Contains(HasSubstr("slow slip before event 1: 4096 rows to ")));
 }
 
-TEST(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
-  const test::TemporaryFolder folder;
-  const auto config = sequence_case(3);
-  start_sequence(folder / "whole", config);
+TEST_F(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
   bool stop = false;
-  const SessionHooks hooks{[](const char*, std::int64_t, std::int64_t) {},
-                           [&] { return stop ? Request::stop : Request::none; }, [](const std::string&) {}};
-  const auto dir = folder / "stopped";
-  EXPECT_THROW(start_sequence(dir, config, hooks,
-                              [&](std::size_t number, const record::SequenceEvent&) { stop = number == 2; }),
-               Interrupted);
-  stop = false;
-  resume_sequence_in(dir);
-  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+  SessionHooks hooks = undisturbed;
+  hooks.request = [&] { return stop ? Request::stop : Request::none; };
+  const auto done = [&](std::size_t number, const record::SequenceEvent&) { stop = number == 2; };
+  EXPECT_THROW(start_sequence(dir_, sequence_case(3), hooks, done), Interrupted);
+  expect_same_as_whole(sequence_case(3));
 }
 
-TEST(SequenceInAFolder, SlowSlipThatWasChangedIsRefused) {
-  const test::TemporaryFolder folder;
-  const auto dir = folder / "out", slow = dir / "unfinished" / "slow" / "0001" / "interface.h5";
-  EXPECT_THROW(start_sequence(dir, rate_and_state_case(2), stopping_at("event 2", 10)), Interrupted);
+TEST_F(SequenceInAFolder, SlowSlipThatWasChangedIsRefused) {
+  const auto slow = unfinished_ / "slow/0001/interface.h5";
+  stop(rate_and_state_case(2), "event 2", 10);
   const auto content = test::read_file(slow);
   test::write_file(slow, content.substr(0, content.size() / 2));
-  EXPECT_THAT(error_of([&] { resume_sequence_in(dir); }), HasSubstr("was changed since it was finished"));
+  expect_refused("was changed since it was finished");
   fs::remove(slow);
-  EXPECT_THAT(error_of([&] { resume_sequence_in(dir); }), HasSubstr("was changed since it was finished"));
+  expect_refused("was changed since it was finished");
   test::write_file(slow, content);
-  resume_sequence_in(dir);
-  EXPECT_TRUE(is_complete(dir));
+  finish();
 }
 
-TEST(SequenceInAFolder, APartThatIsDamagedWhileALaterOneRunsIsNotPublished) {
+TEST_F(SequenceInAFolder, APartThatIsDamagedWhileALaterOneRunsIsNotPublished) {
   for (const char* part :
        {"slow/0001/interface.h5", "events/0001/energy.csv", "events/0001/checksums.sha256"}) {
-    const test::TemporaryFolder folder;
-    const auto dir = folder / "out", file = dir / "unfinished" / part;
+    fs::remove_all(dir_);
     auto hooks = undisturbed;
     hooks.progress = [&, damaged = false](const char* now, std::int64_t, std::int64_t) mutable {
       if (damaged || now != std::string("event 2")) return;
-      test::write_file(file, test::read_file(file).substr(0, 100));
+      test::write_file(unfinished_ / part, test::read_file(unfinished_ / part).substr(0, 100));
       damaged = true;
     };
-    EXPECT_THROW(start_sequence(dir, rate_and_state_case(2), hooks), WriteError) << part;
-    EXPECT_FALSE(fs::exists(dir / "sequence.json"));
-    EXPECT_THAT(test::read_file(dir / "unfinished" / "sequence.json"), HasSubstr("\"failed\""));
+    EXPECT_THROW(start_sequence(dir_, rate_and_state_case(2), hooks), WriteError) << part;
+    EXPECT_FALSE(fs::exists(dir_ / "sequence.json"));
+    EXPECT_THAT(test::read_file(unfinished_ / "sequence.json"), HasSubstr("\"failed\""));
   }
 }
 
 /// As if the program had been killed in between.
-TEST(SequenceInAFolder, AnEventWithoutItsCaseFileYetBeginsAnew) {
-  const test::TemporaryFolder folder;
-  const auto config = sequence_case(2);
-  const auto dir = folder / "out";
-  start_sequence(folder / "whole", config);
-  EXPECT_THROW(start_sequence(dir, config, stopping_at("event 2", 10)), Interrupted);
-  fs::remove(dir / "unfinished" / "events" / "0002" / "unfinished" / "case.resolved.toml");
-  resume_sequence_in(dir);
-  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+TEST_F(SequenceInAFolder, AnEventWithoutItsCaseFileYetBeginsAnew) {
+  stop(sequence_case(2), "event 2", 10);
+  fs::remove(unfinished_ / "events/0002/unfinished/case.resolved.toml");
+  expect_same_as_whole(sequence_case(2));
 }
 
-TEST(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
-  const test::TemporaryFolder folder;
-  const auto config = sequence_case(2);
-  SessionHooks failing = undisturbed;
-  failing.progress = [](const char* part, std::int64_t step, std::int64_t) {
-    if (part == std::string("event 1") && step >= 200) throw WriteError("the disk is full");
-  };
-  const auto dir = folder / "out";
-  EXPECT_THROW(start_sequence(dir, config, failing), WriteError);
-  EXPECT_TRUE(fs::exists(dir / "unfinished" / "events" / "0001" / "unfinished" / "interface.h5"));
-  resume_sequence_in(dir);
-  start_sequence(folder / "whole", config);
-  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+TEST_F(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
+  const WriteError full("the disk is full");
+  EXPECT_THROW(start_sequence(dir_, sequence_case(2), failing_in("event 1", 200, full)), WriteError);
+  EXPECT_TRUE(fs::exists(unfinished_ / "events/0001/unfinished/interface.h5"));
+  expect_same_as_whole(sequence_case(2));
 }
 
-TEST(SequenceInAFolder, WhatTheFirstSlowSlipHasComeToIsKept) {
-  const test::TemporaryFolder folder;
-  const auto config = rate_and_state_case(2);
+TEST_F(SequenceInAFolder, WhatTheFirstSlowSlipHasComeToIsKept) {
   SessionHooks failing = undisturbed;
   int n_asked = 0;
   failing.request = [&] {
     if (++n_asked == 50) throw WriteError("the disk is full");
     return Request::none;
   };
-  const auto dir = folder / "out";
-  EXPECT_THROW(start_sequence(dir, config, failing), WriteError);
-  EXPECT_TRUE(fs::exists(dir / "unfinished" / "slow" / "0001" / "interface.h5"));
-  resume_sequence_in(dir);
-  start_sequence(folder / "whole", config);
-  EXPECT_EQ(tables_in(dir), tables_in(folder / "whole"));
+  EXPECT_THROW(start_sequence(dir_, rate_and_state_case(2), failing), WriteError);
+  EXPECT_TRUE(fs::exists(unfinished_ / "slow/0001/interface.h5"));
+  expect_same_as_whole(rate_and_state_case(2));
 }
 
-TEST(SequenceInAFolder, FinishedEventsThatWereChangedAreRefused) {
-  const test::TemporaryFolder folder;
-  const auto dir = folder / "out", events = dir / "unfinished" / "events";
-  EXPECT_THROW(start_sequence(dir, sequence_case(3), stopping_at("event 3", 100)), Interrupted);
-  const auto expect_refused = [&](const char* told) {
-    EXPECT_THAT(error_of([&] { resume_sequence_in(dir); }), HasSubstr(told));
-  };
+TEST_F(SequenceInAFolder, FinishedEventsThatWereChangedAreRefused) {
+  const auto events = unfinished_ / "events";
+  stop(sequence_case(3), "event 3", 100);
   const auto swap = [&] {
     fs::rename(events / "0001", events / "other");
     fs::rename(events / "0002", events / "0001");
@@ -506,87 +566,63 @@ TEST(SequenceInAFolder, FinishedEventsThatWereChangedAreRefused) {
   swap();
   expect_refused("0001: was changed since it was finished");
   swap();
-  fs::rename(events / "0002", folder / "0002");
+  fs::rename(events / "0002", folder_ / "0002");
   expect_refused("0002: was changed since it was finished");
-  fs::rename(folder / "0002", events / "0002");
-  const auto text = test::read_file(events / "0001" / "energy.csv");
-  test::write_file(events / "0001" / "energy.csv", text + "1");
+  fs::rename(folder_ / "0002", events / "0002");
+  const auto text = test::read_file(events / "0001/energy.csv");
+  test::write_file(events / "0001/energy.csv", text + "1");
   expect_refused("energy.csv");
-  test::write_file(events / "0001" / "energy.csv", text);
-  resume_sequence_in(dir);
-  EXPECT_TRUE(is_complete(dir));
-  fs::remove(dir / "events" / "0003" / "interface.h5");
-  EXPECT_FALSE(is_complete(dir));
+  test::write_file(events / "0001/energy.csv", text);
+  finish();
+  fs::remove(dir_ / "events/0003/interface.h5");
+  EXPECT_FALSE(is_complete(dir_));
 }
 
-/// Ends as by a signal that gives no time.
-struct Killed {};
-
-SessionHooks killed_in(const std::string& event, std::int64_t killed_at) {
-  SessionHooks hooks = undisturbed;
-  hooks.progress = [=](const char* part, std::int64_t step, std::int64_t) {
-    if (part == event && step >= killed_at) throw Killed();
-  };
-  return hooks;
-}
-
-TEST(SequenceInAFolder, CountsTheSessionsThatWereKilled) {
-  const test::TemporaryFolder folder;
-  const auto dir = folder / "out";
-  EXPECT_THROW(start_sequence(dir, sequence_case(3), killed_in("event 1", 100)), Killed);
+TEST_F(SequenceInAFolder, CountsTheSessionsThatWereKilled) {
+  EXPECT_THROW(start_sequence(dir_, sequence_case(3), failing_in("event 1", 100, Killed())), Killed);
   for (const char* event : {"event 1", "event 2", "event 2"})
-    EXPECT_THROW(resume_sequence_in(dir, killed_in(event, 100)), Killed);
-  resume_sequence_in(dir);
-  EXPECT_EQ(sessions_of(dir / sequence_file), 5);
-  EXPECT_EQ(sessions_of(dir / "events/0001" / run_file), 3);
-  EXPECT_EQ(sessions_of(dir / "events/0002" / run_file), 3);
-  EXPECT_EQ(sessions_of(dir / "events/0003" / run_file), 1);
+    EXPECT_THROW(resume_sequence_in(dir_, failing_in(event, 100, Killed())), Killed);
+  resume_sequence_in(dir_);
+  EXPECT_EQ(sessions_of(dir_ / sequence_file), 5);
+  EXPECT_EQ(sessions_of(dir_ / "events/0001" / run_file), 3);
+  EXPECT_EQ(sessions_of(dir_ / "events/0002" / run_file), 3);
+  EXPECT_EQ(sessions_of(dir_ / "events/0003" / run_file), 1);
 }
 
-TEST(SequenceInAFolder, WhatIsInTheWayIsRefusedBeforeAnythingIsComputed) {
-  const test::TemporaryFolder folder;
-  const auto dir = folder / "out";
-  EXPECT_THROW(start_sequence(dir, sequence_case(3), stopping_at("event 2", 100)), Interrupted);
-  fs::create_directories(dir / "events/0001");
-  test::write_file(dir / "events/0001/run.json", "mine");
-  const auto found = error_of([&] { resume_sequence_in(dir, killed_in("event 2", 0)); });
+TEST_F(SequenceInAFolder, WhatIsInTheWayIsRefusedBeforeAnythingIsComputed) {
+  stop(sequence_case(3), "event 2", 100);
+  fs::create_directories(dir_ / "events/0001");
+  test::write_file(dir_ / "events/0001/run.json", "mine");
+  const auto found = error_of([&] { resume_sequence_in(dir_, failing_in("event 2", 0, Killed())); });
   EXPECT_THAT(found, HasSubstr("0001/run.json: is not of earlier results"));
-  EXPECT_THAT(error_of([&] { start_sequence(dir, sequence_case(3), killed_in("event 1", 0)); }), found);
-  fs::remove_all(dir / "events");
-  resume_sequence_in(dir);
-  EXPECT_TRUE(is_complete(dir));
+  EXPECT_EQ(error_of([&] { start_sequence(dir_, sequence_case(3), failing_in("event 1", 0, Killed())); }),
+            found);
+  fs::remove_all(dir_ / "events");
+  finish();
 }
 
-TEST(SequenceInAFolder, PagesOfAPartOfItAreNoResults) {
-  const test::TemporaryFolder folder;
-  const auto dir = folder / "out";
-  EXPECT_THROW(start_sequence(dir, sequence_case(2), stopping_at("event 2", 100)), Interrupted);
-  for (const auto& place : {dir, dir / "unfinished"})
+TEST_F(SequenceInAFolder, PagesOfAPartOfItAreNoResults) {
+  stop(sequence_case(2), "event 2", 100);
+  for (const auto& place : {dir_, unfinished_})
     test::write_file(place / "report.html", "<!DOCTYPE html><!-- slipfront report -->\n");
-  resume_sequence_in(dir);
-  EXPECT_TRUE(is_complete(dir));
-  EXPECT_FALSE(fs::exists(dir / "report.html"));
+  finish();
+  EXPECT_FALSE(fs::exists(dir_ / "report.html"));
 }
 
-TEST(SequenceInAFolder, AnEventThatDoesNotComeToRestIsRefusedAndKept) {
-  const test::TemporaryFolder folder;
+TEST_F(SequenceInAFolder, AnEventThatDoesNotComeToRestIsRefusedAndKept) {
   auto config = sequence_case(12);
   config.time.end_s = 0.5e-3;
-  const auto dir = folder / "out";
-  EXPECT_THAT(error_of([&] { start_sequence(dir, config); }),
+  EXPECT_THAT(error_of([&] { start_sequence(dir_, config); }),
               HasSubstr("event 1 has not come to rest: time.end_s = 0.0005 s was reached"));
-  const auto info = nlohmann::json::parse(test::read_file(dir / "unfinished" / sequence_file));
+  const auto info = nlohmann::json::parse(test::read_file(unfinished_ / sequence_file));
   EXPECT_EQ(info["status"], "failed");
   EXPECT_EQ(info["events"], 0);
-  EXPECT_TRUE(fs::exists(dir / "unfinished" / "events" / "0001" / "interface.h5"));
+  EXPECT_TRUE(fs::exists(unfinished_ / "events/0001/interface.h5"));
 }
 
-TEST(SequenceInAFolder, AnEventIsGoneOnWithAsPartOfItsSequenceAlone) {
-  const test::TemporaryFolder folder;
-  const auto dir = folder / "out";
-  EXPECT_THROW(start_sequence(dir, sequence_case(2), stopping_at("event 1", 100)), Interrupted);
-  const auto event_dir = dir / "unfinished" / "events" / "0001";
-  EXPECT_THAT(error_of([&] { results::ResultFolder held(event_dir, run_work); }),
+TEST_F(SequenceInAFolder, AnEventIsGoneOnWithAsPartOfItsSequenceAlone) {
+  stop(sequence_case(2), "event 1", 100);
+  EXPECT_THAT(error_of([&] { results::ResultFolder held(unfinished_ / "events/0001", run_work); }),
               HasSubstr("another run keeps"));
 }
 
@@ -621,9 +657,7 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
     const double rests_s = sequence.loading().back().time_s;
     for (const auto& onset : result.event.record.onsets) slipped_at_s[onset.node] = rests_s;
   }
-  const auto& rows = sequence.loading();
-  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())),
-            1e-10 * rows.back().energies.far_edge_work);
+  expect_balance(sequence.loading(), 1e-10 * largest_work(sequence.loading()));
   // Without healing the same comes earlier.
   config.sequence.healing_per_e_fold = 0;
   Sequence strong_at_once(config, test::go_on);
@@ -634,13 +668,13 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
 TEST(Sequence, AHoldDelaysWhatFollows) {
   auto config = sequence_case(3);
   Sequence straight(config, test::go_on);
-  while (straight.end().empty()) run_next(straight, config);
+  run_all(straight, config);
   const double v = top_speed_m_per_s(config), first_s = straight.events()[0].begin_s;
   const double hold_from_s = 0.5 * first_s, hold_s = 1000;
   config.sequence.path = {{hold_from_s, hold_from_s + hold_s, 1e6 + hold_s},
                           {v * hold_from_s, v * hold_from_s, v * 1e6}};
   Sequence held(config, test::go_on);
-  while (held.end().empty()) run_next(held, config);
+  run_all(held, config);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(held.events()[k].shear_m, straight.events()[k].shear_m, 1e-12) << k;
     EXPECT_NEAR(held.events()[k].begin_s, straight.events()[k].begin_s + hold_s, 1e-3) << k;
@@ -685,9 +719,7 @@ TEST(Sequence, InAHoldTheForceRelaxesUnderALawWithAState) {
   EXPECT_LT(last_Pa, (1 - 3e-5) * first_Pa);
   EXPECT_GT(rows.back().time_s, hold_from_s + hold_s);
   EXPECT_GT(rows.back().shear_over_normal, first.shear_over_normal + 1e-4);  // the aged surfaces are stronger
-  double largest = 0;
-  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.far_edge_work));
-  EXPECT_LT(std::abs(imbalance_J_per_m(rows.back(), rows.front())), 1e-10 * largest);
+  expect_balance(rows, 1e-10 * largest_work(rows));
 }
 
 TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
@@ -721,12 +753,9 @@ TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
   }
   const auto& rows = sequence.loading();
   EXPECT_GT(std::ranges::count(rows, LoadingPhase::creep, &LoadingRow::phase), 20);
-  double largest = 0;
-  for (const auto& row : rows) largest = std::max(largest, std::abs(row.energies.far_edge_work));
-  for (const auto& row : rows) {
-    EXPECT_LT(std::abs(imbalance_J_per_m(row, rows.front())), 1e-10 * largest);
+  expect_balance(rows, 1e-10 * largest_work(rows));
+  for (const auto& row : rows)
     EXPECT_NEAR(row.time_s, row.shear_m / top_speed_m_per_s(config), 1e-9 * row.time_s);
-  }
   // Stick-slip: the force falls in each of the last events, and slip comes to metres a second.
   const auto& events = sequence.events();
   for (std::size_t k = 2; k < events.size(); ++k) {
@@ -742,7 +771,7 @@ TEST(Sequence, TimesOfEventsDependLittleOnTheSlipRateAtWhichInertiaCounts) {
     auto config = rate_and_state_case(4);
     config.sequence.inertia_slip_rate_m_per_s = factor * input::inertia_slip_rate_m_per_s(config);
     Sequence sequence(config, test::go_on);
-    while (sequence.end().empty()) run_next(sequence, config);
+    run_all(sequence, config);
     last_s.push_back(sequence.events().back().begin_s);
   }
   EXPECT_NEAR(last_s[0] / last_s[1], 1, 0.01);

@@ -53,21 +53,15 @@ void expect_same(const std::map<std::string, std::string>& files,
     EXPECT_TRUE(files.contains(name) && files.at(name) == bytes) << name;
 }
 
-SessionOptions with_threads(int threads) {
-  SessionOptions options;
-  options.threads = threads;
-  return options;
-}
-
 Finished start(const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed) {
   results::ResultFolder held(dir, run_work);
-  return run_into(held, config, with_threads(1), hooks);
+  return run_into(held, config, test::with_threads(1), hooks);
 }
 
 Finished resume(const fs::path& dir, const SessionHooks& hooks = undisturbed,
                 const input::Case* expected = nullptr, int threads = 1) {
   results::ResultFolder held(dir, run_work);
-  return run::resume(held, expected, with_threads(threads), hooks);
+  return run::resume(held, expected, test::with_threads(threads), hooks);
 }
 
 /// Results of a whole run.
@@ -146,32 +140,31 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
 TEST(Session, GoesOnAsIfItHadNeverStopped) {
   for (const auto& [name, config] : kinds()) {
     SCOPED_TRACE(name);
-    const test::TemporaryFolder folder;
-    EXPECT_EQ(start(folder.path(), config, stopping_at("event", 50)).result.event.end,
-              motion::EventEnd::interrupted);
-    EXPECT_EQ(resume(folder.path(), stopping_at("event", 100), nullptr, 2).result.event.steps, 100);
-    resume(folder.path(), undisturbed, &config);
-    expect_same(results_in(folder.path()), results_of(config));
-    EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
-    files::require_intact(folder.path());
-  }
-}
-
-TEST(Session, GoesOnFromAnyStep) {
-  for (const auto& [name, config] : kinds()) {
-    SCOPED_TRACE(name);
+    const auto expected = results_of(config);
+    {
+      const test::TemporaryFolder folder;
+      EXPECT_EQ(start(folder.path(), config, stopping_at("event", 50)).result.event.end,
+                motion::EventEnd::interrupted);
+      EXPECT_EQ(resume(folder.path(), stopping_at("event", 100), nullptr, 2).result.event.steps, 100);
+      resume(folder.path(), undisturbed, &config);
+      expect_same(results_in(folder.path()), expected);
+      EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
+      files::require_intact(folder.path());
+    }
+    // From a step at which it is not asked as a rule.
     const test::TemporaryFolder folder;
     std::optional<test::InterruptionAfter> after;
-    const auto at_50 = [&](const char*, std::int64_t, std::int64_t) {
+    auto hooks = undisturbed;
+    hooks.progress = [&](const char*, std::int64_t, std::int64_t) {
       if (!after) after.emplace(22);
     };
-    const auto stop = [&] { return after && after->is_wanted() ? Request::stop : Request::none; };
-    const auto begun = start(folder.path(), config, {at_50, stop, [](const std::string&) {}});
+    hooks.request = [&] { return after && after->is_wanted() ? Request::stop : Request::none; };
+    const auto begun = start(folder.path(), config, hooks);
     EXPECT_EQ(begun.result.event.end, motion::EventEnd::interrupted);
     EXPECT_NE(begun.result.event.steps % 50, 0);
     after.reset();
     resume(folder.path());
-    expect_same(results_in(folder.path()), results_of(config));
+    expect_same(results_in(folder.path()), expected);
   }
 }
 
@@ -196,7 +189,7 @@ class InterruptedRun : public testing::Test {
  protected:
   InterruptedRun() {
     results::ResultFolder held(folder_.path(), run_work);
-    auto options = with_threads(1);
+    auto options = test::with_threads(1);
     options.keep_every_s = 20e-6;
     run_into(held, config_, options, stopping_at("event", 100));
   }

@@ -19,4 +19,10 @@ inline run::SessionHooks stopping_at(const std::string& part, std::int64_t stop_
 
 inline const run::SessionHooks undisturbed = stopping_at("", -1);
 
+inline run::SessionOptions with_threads(int threads) {
+  run::SessionOptions options;
+  options.threads = threads;
+  return options;
+}
+
 }  // namespace slipfront::test

@@ -18,14 +18,6 @@ Eigen::MatrixXd matrix(const CellStiffness& K) {
   return Eigen::Map<const Eigen::Matrix<double, 8, 8, Eigen::RowMajor>>(K.data());
 }
 
-/// Nodal values of a displacement field.
-template <class F>
-Eigen::VectorXd nodal(const CellCoordinates& c, F&& field) {
-  Eigen::VectorXd u(8);
-  for (int a = 0; a < 4; ++a) u.segment<2>(2 * a) = field(Eigen::Vector2d(c[2 * a], c[2 * a + 1]));
-  return u;
-}
-
 TEST(Element, SquareHasTheTextbookStiffness) {
   // Bilinear square in plane stress, times E / (1 - nu^2): first row of the matrix, nodes counterclockwise.
   const Material m;
@@ -48,34 +40,6 @@ TEST(Element, EqualsTheReferenceIntegration) {
     EXPECT_LE(reference::max_abs(matrix(cell_stiffness(parallelogram, m)) -
                                  reference::stiffness(parallelogram, m, 3)),
               tolerance);
-  }
-}
-
-TEST(Element, LinearFieldsGiveTheExactForcesAndEnergy) {
-  // Uniform stress: each edge's traction goes to its two nodes in halves, whatever the cell's shape.
-  const Material m;
-  Eigen::Matrix2d gradient;
-  gradient << 0.7, -0.3, 0.5, 1.1;
-  const Eigen::Vector3d strain(gradient(0, 0), gradient(1, 1), gradient(0, 1) + gradient(1, 0));
-  const Eigen::Vector3d sigma = reference::elasticity(m) * strain;
-  Eigen::Matrix2d stress;
-  stress << sigma(0), sigma(2), sigma(2), sigma(1);
-  for (const auto& cell : {square, parallelogram, distorted}) {
-    const Eigen::VectorXd u = nodal(cell, [&](Eigen::Vector2d X) -> Eigen::Vector2d {
-      return gradient * X + Eigen::Vector2d(0.2, -0.4);
-    });
-    Eigen::VectorXd expected = Eigen::VectorXd::Zero(8);
-    for (int a = 0; a < 4; ++a) {
-      const int b = (a + 1) % 4;
-      const Eigen::Vector2d outward(cell[2 * b + 1] - cell[2 * a + 1], cell[2 * a] - cell[2 * b]);
-      expected.segment<2>(2 * a) += 0.5 * stress * outward;
-      expected.segment<2>(2 * b) += 0.5 * stress * outward;
-    }
-    const Eigen::MatrixXd K = matrix(cell_stiffness(cell, m));
-    const double scale = K.norm() * u.norm();
-    EXPECT_LE((K * u - expected).norm(), 1e-14 * scale);
-    EXPECT_NEAR(0.5 * u.dot(K * u), 0.5 * strain.dot(sigma) * reference::area_m2(cell),
-                1e-14 * scale * u.norm());
   }
 }
 

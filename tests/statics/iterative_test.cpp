@@ -327,7 +327,10 @@ TEST_P(ByMultigrid, CyclesDoNotGrowWithTheMeshOfTwoBodies) {
 void expect_states_of_the_factorisation(const mesh::Mesh& mesh, const std::vector<double>& mu, TopEdge edge,
                                         const std::vector<double>& shares) {
   const auto by = [&](StaticSolver solver) {
-    return Statics({mesh, pmma}, std::nullopt, {.top_during_tilt = edge, .solver = solver}, mu);
+    auto loading = tilted;
+    loading.top_during_tilt = edge;
+    loading.solver = solver;
+    return Statics({mesh, pmma}, std::nullopt, loading, mu);
   };
   const Statics direct = by(StaticSolver::direct), iterative = by(StaticSolver::iterative);
   EXPECT_EQ(iterative.solver().n_levels() > 1, mesh.interface_nodes.size() > 150);
