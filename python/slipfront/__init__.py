@@ -2,7 +2,7 @@
 """Slip fronts at frictional interfaces: cases run or composed, results opened, a user's own data measured.
 docs/python.md
 
-Nothing is imported before it is used: figures and readers need neither xarray nor the compiled module."""
+Nothing is imported before it is used: figures and readers do not need the compiled module."""
 
 from difflib import get_close_matches
 from importlib import import_module

@@ -10,7 +10,7 @@ from pathlib import Path
 from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.given import flag, in_order, instance, kept_path, text
-from slipfront.opened_sequence import OpenSequence, opened
+from slipfront.opened_sequence import OpenSequence, open_sequence
 from slipfront.running import CHECKPOINT_EVERY_S, MOST_THREADS, threads_of
 
 
@@ -92,6 +92,4 @@ class Batch:
         """Runs a sequence of events into a folder in `folder`. It has all threads."""
         to, every_s = self.folder / name, CHECKPOINT_EVERY_S
         case.run(to, True, self._threads, every_s, None, [], within=self._folder)
-        found = opened(to)
-        assert isinstance(found, OpenSequence)
-        return found
+        return open_sequence(to)

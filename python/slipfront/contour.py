@@ -13,7 +13,7 @@ import xarray as xr
 from slipfront.files import DataError
 from slipfront.given import instance, number, whole
 from slipfront.opened import OpenRun
-from slipfront.read import read_fronts, require
+from slipfront.read import require
 
 ZONES = 5  # half the default box's width over the length in which friction weakens
 SPEED_ZONES = 2  # to each side of the tip, over which its speed is taken
@@ -223,7 +223,7 @@ class Tip:
 
 
 def tip_of(run: OpenRun, front: int, time_s: float) -> Tip:
-    fronts = {found.id: found for found in read_fronts(run.folder / "fronts.csv")}
+    fronts = {found.id: found for found in run.front_list}
     require(front in fronts, run.folder / "fronts.csv", f"no front {front}")
     path = fronts[front]
     x_tip = path.tip_m(time_s)

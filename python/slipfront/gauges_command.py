@@ -19,8 +19,7 @@ from slipfront import command
 from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
 from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, from_arms, gauges_of, read_gauges
-from slipfront.opened import OpenRun
-from slipfront.read import read_place
+from slipfront.opened import OpenRun, open_run
 from slipfront.tip_fit import TipFit, bodies_of, fit_tips, limiting_speed_m_per_s
 
 MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
@@ -262,7 +261,7 @@ def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def work(options: argparse.Namespace) -> list[str]:
-    run = OpenRun(read_place(options.records)) if is_folder(options.records) else None
+    run = open_run(options.records) if is_folder(options.records) else None
     if run is None and options.stress:
         raise DataError("--stress is of a run; a record holds what its columns say: leave it out")
     with warnings.catch_warnings(record=True) as passed_over:
@@ -271,7 +270,7 @@ def work(options: argparse.Namespace) -> list[str]:
     gauges, notes = prepared(read, options)
     notes = [*(str(told.message) for told in passed_over), *notes]
     if options.compare is not None:
-        beside = OpenRun(read_place(options.compare))
+        beside = open_run(options.compare)
         found = compare_gauges(gauges, beside, within_s=options.within_s)
         lines, rows = lines_of_comparison(found), rows_of_comparison(found)
     else:

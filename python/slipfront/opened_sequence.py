@@ -16,7 +16,7 @@ import xarray as xr
 from slipfront.files import DataError, Table, exists, read_table
 from slipfront.folder import LIST, SEQUENCE, problem, read_list, result_file
 from slipfront.given import kept_path
-from slipfront.opened import Kept, OpenRun, read_case, stored_history, table_variables
+from slipfront.opened import Kept, OpenRun, open_run, read_case, stored_history, table_variables
 from slipfront.read import Place, is_sequence, read_place, require
 from slipfront.units import attributes
 
@@ -110,7 +110,7 @@ class Runs(Sequence[OpenRun]):
             wrong = problem(folder, of_event, sums[of_event])
             if wrong is not None:
                 raise DataError(wrong)
-        return OpenRun(read_place(folder / name), self._kept)
+        return open_run(folder / name, self._kept)
 
 
 class SlowSlip(Sequence[xr.Dataset]):
@@ -143,29 +143,29 @@ class OpenSequence:
     of another sequence."""
 
     def __init__(self, place: Place, kept: Kept | None = None) -> None:
-        self._place = place
+        self.place = place
         self._kept = kept
 
     def __repr__(self) -> str:
-        title = self.case.get("title") or self._place.name
-        n = self._place.info.get("events", 0)
+        title = self.case.get("title") or self.place.name
+        n = self.place.info.get("events", 0)
         return f"<slipfront sequence '{title}', {n} events, {self.status}: {self.folder}>"
 
     @property
     def folder(self) -> Path:
         """Where the files are: the sequence's folder, or its unfinished/."""
-        return self._place.folder
+        return self.place.folder
 
     @property
     def info(self) -> dict[str, Any]:
         """sequence.json: version, end, wave speeds, number of events, largest friction, last state, imbalance
         of energy."""
-        return deepcopy(self._place.info)
+        return deepcopy(self.place.info)
 
     @property
     def status(self) -> str:
         """How the sequence ended: complete, interrupted, blew_up, failed, or running."""
-        return self._place.status
+        return self.place.status
 
     @property
     def case(self) -> dict[str, Any]:
@@ -199,7 +199,7 @@ class OpenSequence:
     @property
     def runs(self) -> Sequence[OpenRun]:
         """The runs of `events`, in order; runs[0] is that of event 1. An event under way is none of them."""
-        return Runs(self._place, self.events.sizes["event"], self._kept)
+        return Runs(self.place, self.events.sizes["event"], self._kept)
 
     @property
     def slow(self) -> Sequence[xr.Dataset]:
@@ -233,11 +233,16 @@ class OpenSequence:
         return read_table(result_file(self.folder / name))
 
 
+def open_sequence(folder: Path, kept: Kept | None = None) -> OpenSequence:
+    """The sequence in a folder."""
+    return OpenSequence(read_place(folder, SEQUENCE), kept)
+
+
 def opened(folder: Path, kept: Kept | None = None) -> OpenRun | OpenSequence:
     """By what the folder holds."""
     if is_sequence(folder):
-        return OpenSequence(read_place(folder, SEQUENCE), kept)
-    return OpenRun(read_place(folder), kept)
+        return open_sequence(folder, kept)
+    return open_run(folder, kept)
 
 
 def open(folder: str | os.PathLike[str]) -> OpenRun | OpenSequence:

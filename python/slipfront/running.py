@@ -20,9 +20,8 @@ import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import BlowUpError, CaseError, WriteError
 from slipfront.given import array, flag, in_order, kept_path, number, path, shown, table, text, whole
-from slipfront.opened import Kept, OpenRun
+from slipfront.opened import Kept, OpenRun, open_run
 from slipfront.opened_sequence import OpenSequence, opened
-from slipfront.read import read_place
 
 # A path, the text of a case file, or its tables as dictionaries.
 CaseLike = str | os.PathLike[str] | Mapping[str, Any]
@@ -309,7 +308,7 @@ def run_with_law(
     folder = temporary_folder()
     try:
         compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, of_states, show), progress)
-        return OpenRun(read_place(folder), Kept(folder))
+        return open_run(folder, Kept(folder))
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

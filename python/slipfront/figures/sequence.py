@@ -21,9 +21,8 @@ from matplotlib.figure import Figure
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, command_to_draw, write_results
 from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
-from slipfront.folder import SEQUENCE
-from slipfront.opened_sequence import OpenSequence
-from slipfront.read import even, read_place
+from slipfront.opened_sequence import OpenSequence, open_sequence
+from slipfront.read import even
 
 LOCAL, GLOBAL, PREDICTED = "#0072b2", "#d55e00", "#000000"
 MOST_ROWS, MOST_NODES, MOST_LABELS = 1200, 400, 24  # of all phases
@@ -121,7 +120,7 @@ def sequence(of: OpenSequence) -> Drawing:
 
 
 def draw(folder: Path) -> Drawing:
-    return sequence(OpenSequence(read_place(folder, SEQUENCE)))
+    return sequence(open_sequence(folder))
 
 
 main = command_to_draw(

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from slipfront.folder import belongs
-from slipfront.read import BLEW_UP, Place, Probes, n_finite, read_probes, require, require_ascending
+from slipfront.opened import OpenRun
+from slipfront.read import BLEW_UP, Probes, n_finite, read_probes, require, require_ascending
 from slipfront.report.numbers import listed, packed, unit
 from slipfront.report.page import plot, section
 from slipfront.units import quantity
@@ -38,18 +39,18 @@ CHOICES = {
 }
 
 
-def probes_of(place: Place) -> Probes | None:
+def probes_of(run: OpenRun) -> Probes | None:
     """The records of a run, of one that blew up as far as they are finite; None of a run without any."""
-    file = place.folder / "probes.h5"
-    if place.growing or not belongs(file):
+    file = run.folder / "probes.h5"
+    if run.place.growing or not belongs(file):
         return None
     probes = read_probes(file)
     require_ascending(file, "time_s", probes.time_s)
-    if place.status == BLEW_UP:
+    if run.status == BLEW_UP:
         n = n_finite(*probes.fields.values())
         cut = {name: values[:n] for name, values in probes.fields.items()}
         probes = replace(probes, time_s=probes.time_s[:n], fields=cut)
-    if place.records_prestress:  # the page shows the change, and adds what is known of the state before
+    if run.records_prestress:  # the page shows the change, and adds what is known of the state before
         changed = {
             n: v - v[:1] if n.startswith(("strain", "stress")) else v for n, v in probes.fields.items()
         }
