@@ -129,6 +129,13 @@ def require_own(file: Path, mark: bytes, what: str) -> None:
             raise DataError(f"{file}: is there and not {what}: not replaced; give another name with -o")
 
 
+def write_own(file: Path, mark: str, text: str, what: str) -> None:
+    """A file that begins with a mark, in place of one of ours alone."""
+    require_own(file, mark.encode(), what)
+    with publishing_into(file.parent) as made:
+        (made / file.name).write_text(mark + text, encoding="utf-8")
+
+
 @contextmanager
 def publishing_into(folder: Path) -> Iterator[Path]:
     """A folder to write into, inside `folder`. At the end its files go there; after an error none does."""

@@ -4,19 +4,18 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import re
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from slipfront import command
 from slipfront.files import DataError
-from slipfront.material import wave_speeds
 from slipfront.measures import LENGTHS_AND_TIMES, FrontSettings, find_fronts, slices_of
 from slipfront.onsets import NONE, read_onsets
+from slipfront.running import wave_speeds
 
 COLUMNS = ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s")
 SPEEDS = ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s")  # of the whole front
@@ -130,12 +129,7 @@ def rows(fronts: xr.Dataset, c_L_m_per_s: float | None) -> str:
         columns["static_ratio"] = (fronts["t_s_Pa"] / fronts["p_s_Pa"]).to_numpy()
     if np.isfinite(columns["static_ratio"]).any():
         names.append("static_ratio")
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(names)
-    for row in zip(*(columns[name].tolist() for name in names), strict=True):
-        writer.writerow("" if value != value else repr(value) for value in row)
-    return text.getvalue()
+    return pd.DataFrame(columns)[names].to_csv(index=False, lineterminator="\n")
 
 
 def in_words(text: str) -> str:
@@ -199,13 +193,8 @@ def main(arguments: list[str]) -> int:
         of_waves = wave_speeds_of(options)
         fronts = find(options.onsets, options)
         if options.output is not None:
-            write(options.output, rows(fronts, of_waves.get("c_L")))
+            table = rows(fronts, of_waves.get("c_L"))
+            command.write_own(options.output, MARK, table, "a table of slipfront fronts")
         return summary(fronts, of_waves)
 
     return command.run("slipfront fronts", work)
-
-
-def write(file: Path, text: str) -> None:
-    command.require_own(file, MARK.encode(), "a table of slipfront fronts")
-    with command.publishing_into(file.parent) as made:
-        (made / file.name).write_text(MARK + text, encoding="utf-8")

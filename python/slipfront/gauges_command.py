@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import re
 import warnings
 from dataclasses import replace
@@ -13,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from slipfront import command
@@ -37,16 +36,8 @@ OPTIONS = (
 
 #: Those that count in a fit, and in a comparison, alone.
 OF_FITS = (
-    "speed_m_per_s",
-    "direction",
-    "r_min_m",
-    "r_max_m",
-    "no_step",
-    "passages",
-    *MATERIAL,
-    "plane",
-    "base",
-)
+    "speed_m_per_s", "direction", "r_min_m", "r_max_m", "no_step", "passages", *MATERIAL, "plane", "base",
+)  # fmt: skip
 OF_COMPARISONS = ("within_s",)
 
 
@@ -170,15 +161,6 @@ def prepared(gauges: list[Gauge], options: argparse.Namespace) -> tuple[list[Gau
     return made, notes
 
 
-def as_csv(rows: list[dict[str, Any]]) -> str:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({name: "" if value != value else value for name, value in row.items()})
-    return text.getvalue()
-
-
 def in_components(of: dict[str, float]) -> dict[str, Any]:
     """Of components or of arms."""
     if not of or next(iter(of)) in COMPONENTS:
@@ -284,9 +266,8 @@ def work(options: argparse.Namespace) -> list[str]:
         is_strain = {gauge.name: gauge.is_strain for gauge in gauges}
         lines, rows = [line_of(fit) for fit in fits], [row_of(fit, is_strain[fit.gauge]) for fit in fits]
     if options.output is not None:
-        command.require_own(options.output, MARK.encode(), "a table of slipfront gauges")
-        with command.publishing_into(options.output.parent) as made:
-            (made / options.output.name).write_text(MARK + as_csv(rows), encoding="utf-8")
+        text = pd.DataFrame(rows).to_csv(index=False, lineterminator="\n")
+        command.write_own(options.output, MARK, text, "a table of slipfront gauges")
     if options.figure is not None and options.compare is None and not any(fit.has_tip for fit in fits):
         notes.append(f"{options.figure}: not drawn: no gauge has a fit")
     elif options.figure is not None:

@@ -39,13 +39,12 @@ from slipfront.read import (
     read_fracture,
     read_fronts,
     read_place,
-    read_probes,
     read_static,
     require,
     require_ascending,
     require_same_nodes,
 )
-from slipfront.units import attributes
+from slipfront.units import attributes, variables
 
 STRESSES = ("stress_xx_Pa", "stress_yy_Pa", "stress_zz_Pa", "stress_xy_Pa")
 CHANGE = ", change since the start"
@@ -110,7 +109,7 @@ def attributes_of(found: h5py.Dataset, name: str) -> dict[str, str]:
 
 def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr.Variable]:
     """The columns of a table: numbers, or texts where a column holds any."""
-    variables = {}
+    columns = {}
     for name in table.header:
         try:
             values: Any = table.numbers(name, finite)
@@ -118,8 +117,8 @@ def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr
             if not any(cell and cell[0].isalpha() for cell in table.texts(name)):
                 raise
             values = np.array(table.texts(name), dtype=np.str_)
-        variables[name] = xr.Variable((dim,), values, attributes(name))
-    return variables
+        columns[name] = xr.Variable((dim,), values, attributes(name))
+    return columns
 
 
 def read_case(folder: Path) -> dict[str, Any]:
@@ -165,25 +164,12 @@ def stored_history(file: Path, kept: Any, attrs: dict[str, str], finite: bool = 
     return xr.Dataset(fields, coordinates, attrs)
 
 
-class OpenRun:
-    """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
-    what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
-    run."""
+class Opened:
+    """What OpenRun and OpenSequence have in common."""
 
     def __init__(self, place: Place, kept: Kept | None = None) -> None:
         self.place = place
         self._kept = kept
-
-    def __repr__(self) -> str:
-        title = self.case.get("title") or self.name
-        return f"<slipfront run '{title}', {self.status}: {self.folder}>"
-
-    def checked(self) -> OpenRun:
-        """The same; all its files but the probes are compared with their checksums now, and read but for
-        history and fields."""
-        for name in ("case", "tractions", "front_list", "history", "fields", "balance"):
-            getattr(self, name)
-        return self
 
     @property
     def name(self) -> str:
@@ -192,18 +178,57 @@ class OpenRun:
 
     @property
     def folder(self) -> Path:
-        """Where the files are: the run's folder, or its unfinished/."""
+        """Where the files are: its folder, or unfinished/ in it."""
         return self.place.folder
 
     @property
     def info(self) -> dict[str, Any]:
-        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings."""
+        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings; or sequence.json:
+        version, end, wave speeds, number of events, largest friction, last state, imbalance of energy."""
         return deepcopy(self.place.info)  # what others read stays as the file has it
 
     @property
     def status(self) -> str:
-        """How the run ended: complete, interrupted, blew_up, failed, or running."""
+        """How it ended: complete, interrupted, blew_up, failed, or running."""
         return self.place.status
+
+    @cached_property
+    def _case(self) -> dict[str, Any]:
+        return read_case(self.folder)
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
+        are copies in the folder, by their whole paths."""
+        return deepcopy(self._case)
+
+    def entry(self, table: str, key: str) -> Any:
+        """A key of a table of the case; None where it has none."""
+        return entry(self._case, table, key)
+
+    @property
+    def title(self) -> str:
+        """That of the case; may be empty."""
+        return str(self._case.get("title", ""))
+
+    def _attributes(self) -> dict[str, str]:
+        return {"title": self.title, "status": self.status, "folder": str(self.folder)}
+
+
+class OpenRun(Opened):
+    """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
+    what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
+    run."""
+
+    def __repr__(self) -> str:
+        return f"<slipfront run '{self.title or self.name}', {self.status}: {self.folder}>"
+
+    def checked(self) -> OpenRun:
+        """The same; all its files but the probes are compared with their checksums now, and read but for
+        history and fields."""
+        for name in ("case", "tractions", "front_list", "history", "fields", "balance"):
+            getattr(self, name)
+        return self
 
     @property
     def mark(self) -> str:
@@ -225,20 +250,6 @@ class OpenRun:
                 "trigger or at once from a front: the fastest speeds may be of such"
             )
         return lines
-
-    @cached_property
-    def _case(self) -> dict[str, Any]:
-        return read_case(self.folder)
-
-    @property
-    def case(self) -> dict[str, Any]:
-        """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
-        are the copies of the run, by their whole paths."""
-        return deepcopy(self._case)
-
-    def entry(self, table: str, key: str) -> Any:
-        """A key of a table of the case; None where it has none."""
-        return entry(self._case, table, key)
 
     def parameter(self, key: str) -> float:
         """Number of a dotted key of the case."""
@@ -315,8 +326,8 @@ class OpenRun:
             found = stored_history(file, self._kept, self._attributes(), finite=not blew_up)
             require_same_nodes(file, found["x_m"].to_numpy(), self.x_m)
         if blew_up:  # as far as it is finite
-            fields = (found[name].to_numpy() for name in HISTORY_FIELDS)
-            found = found.isel(time_s=slice(n_finite(found["time_s"].to_numpy(), *fields)))
+            columns = (found[name].to_numpy() for name in ("time_s", *found))
+            found = found.isel(time_s=slice(n_finite(*columns)))
         return found
 
     @property
@@ -343,19 +354,14 @@ class OpenRun:
         file = self.folder / "fronts.csv"
         if not self.front_list and not belongs(file):
             return xr.Dataset(attrs=self._attributes())
-        table = read_table(result_file(file), growing=self.place.growing)
-        points = table_variables(table, "point")
-        points["front_id"] = points["front_id"].astype(np.int64)
+        found = self._of_points(file).rename(direction="direction_of_point")
         whole = self.info.get("fronts", [])
         told = [f.get(name) for f in whole for name in ("id", "direction", "end", "mode")]
         plain = all(cell is None or isinstance(cell, int | str) for cell in told)
         require(plain, self.folder / "run.json", "an entry of 'fronts' is neither a number nor a text")
-        coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
-        coordinates["front"] = xr.Variable(("front",), [f.get("id") for f in whole], attributes("front"))
-        points["direction_of_point"] = points.pop("direction")
-        for name in ("direction", "end", "mode"):
-            points[name] = xr.Variable(("front",), [f.get(name) for f in whole], attributes(name))
-        return xr.Dataset(points, coordinates, self._attributes())
+        names = {"front": "id", "direction": "direction", "end": "end", "mode": "mode"}
+        of_fronts = {name: [f.get(key) for f in whole] for name, key in names.items()}
+        return found.assign(variables(("front",), of_fronts))
 
     @cached_property
     def fracture(self) -> xr.Dataset:
@@ -366,11 +372,7 @@ class OpenRun:
         file = self.folder / "fracture.csv"
         if not belongs(file):
             return xr.Dataset(attrs=self._attributes())
-        table = read_table(result_file(file), growing=self.place.growing)
-        points = table_variables(table, "point")
-        points["front_id"] = points["front_id"].astype(np.int64)
-        coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
-        return xr.Dataset(points, coordinates, self._attributes())
+        return self._of_points(file)
 
     @cached_property
     def breakdown(self) -> dict[int, dict[str, np.ndarray]] | None:
@@ -412,19 +414,17 @@ class OpenRun:
         if mesh is None:
             return None
         n_nodes = len(mesh.points_m)
-        coordinates = {
-            "time_s": xr.Variable(("time_s",), mesh.time_s, attributes("time_s")),
-            "x_m": xr.Variable(("node",), mesh.points_m[:, 0], attributes("x_m")),
-            "y_m": xr.Variable(("node",), mesh.points_m[:, 1], attributes("y_m")),
-            "component": xr.Variable(("component",), ["x", "y"], attributes("component")),
-        }
-        variables = {"cell_nodes": xr.Variable(("cell", "corner"), mesh.cells, attributes("cell_nodes"))}
+        x_m, y_m = mesh.points_m.T
+        coordinates = variables(("node",), {"x_m": x_m, "y_m": y_m})
+        coordinates |= variables(("time_s",), {"time_s": mesh.time_s})
+        coordinates |= variables(("component",), {"component": ["x", "y"]})
+        found = variables(("cell", "corner"), {"cell_nodes": mesh.cells})
         with open_hdf5(mesh.file) as hdf5:
             for kind, dim, size in (("Point", "node", n_nodes), ("Cell", "cell", len(mesh.cells))):
                 for name in hdf5["VTKHDF/Steps"].get(f"{kind}DataOffsets", ()):
                     shape = len(mesh.time_s), size
-                    variables[name] = self._stored_snapshots(mesh.file, hdf5, f"{kind}Data", name, dim, shape)
-        return xr.Dataset(variables, coordinates, self._attributes())
+                    found[name] = self._stored_snapshots(mesh.file, hdf5, f"{kind}Data", name, dim, shape)
+        return xr.Dataset(found, coordinates, self._attributes())
 
     @cached_property
     def probes(self) -> xr.Dataset | None:
@@ -433,19 +433,20 @@ class OpenRun:
         file = self.folder / "probes.h5"
         if not belongs(file) or is_open(result_file(file)):
             return None
-        probes = read_probes(file)
-        coordinates = {
-            "time_s": xr.Variable(("time_s",), probes.time_s, attributes("time_s")),
-            "probe": xr.Variable(("probe",), list(probes.names), attributes("probe")),
-            "x_m": xr.Variable(("probe",), probes.x_m, attributes("x_m")),
-            "y_m": xr.Variable(("probe",), probes.y_m, attributes("y_m")),
-        }
+        file = result_file(file)
         with open_hdf5(file) as hdf5:
-            variables = {
-                name: xr.Variable(("time_s", "probe"), values, self._of_motion(hdf5[name], name))
-                for name, values in probes.fields.items()
-            }
-        return xr.Dataset(variables, coordinates, self._attributes())
+            require("name" in hdf5, file, "no data set 'name'")
+            names = [str(name) for name in hdf5["name"].asstr()[()]]
+            x_m, y_m, time_s = (dataset(hdf5, name, 1)[()] for name in ("x_m", "y_m", "time_s"))
+            require(len(x_m) == len(y_m) == len(names), file, "names and places differ in number")
+            records = {}
+            for name in PROBE_FIELDS:
+                found, shape = dataset(hdf5, name, 2), (len(time_s), len(names))
+                require(found.shape == shape, file, f"{name} is {found.shape}; it must be {shape}")
+                records[name] = xr.Variable(("time_s", "probe"), found[()], self._of_motion(found, name))
+        coordinates = variables(("probe",), {"probe": names, "x_m": x_m, "y_m": y_m})
+        coordinates |= variables(("time_s",), {"time_s": time_s})
+        return xr.Dataset(records, coordinates, self._attributes())
 
     def absolute_stress(self, records: xr.Dataset) -> xr.Dataset:
         """The whole stress of `probes` or `snapshots`, Pa, positive in tension: as it is recorded, but NaN
@@ -467,14 +468,17 @@ class OpenRun:
             )
         return xr.Dataset(whole, attrs=records.attrs)
 
-    def _attributes(self) -> dict[str, str]:
-        return {"title": str(self._case.get("title", "")), "status": self.status, "folder": str(self.folder)}
-
     def _from_table(self, file: Path, dim: str, finite: bool = True) -> xr.Dataset:
         table = read_table(result_file(file), growing=self.place.growing)
-        variables = table_variables(table, dim, finite)
-        require(dim in variables, file, f"no column '{dim}'")
-        return xr.Dataset(variables, attrs=self._attributes())
+        columns = table_variables(table, dim, finite)
+        require(dim in columns, file, f"no column '{dim}'")
+        return xr.Dataset(columns, attrs=self._attributes())
+
+    def _of_points(self, file: Path) -> xr.Dataset:
+        """A table of the points of fronts."""
+        points = table_variables(read_table(result_file(file), growing=self.place.growing), "point")
+        points["front_id"] = points["front_id"].astype(np.int64)
+        return xr.Dataset(points, attrs=self._attributes()).set_coords(["front_id", "x_m", "onset_s"])
 
     def _of_motion(self, found: h5py.Dataset, name: str) -> dict[str, str]:
         """Attributes of what counts from the state before the event, where that is not the unloaded one."""
@@ -517,14 +521,8 @@ class OpenRun:
         time_s, fields = open_history(file, self.x_m)
         for name in HISTORY_FIELDS if self.status != BLEW_UP else ():
             require(np.isfinite(fields[name]), file, f"a value of {name} is not finite")
-        variables = {
-            name: xr.Variable(("time_s", "x_m"), values, attributes(name)) for name, values in fields.items()
-        }
-        coordinates = {
-            "time_s": xr.Variable(("time_s",), time_s, attributes("time_s")),
-            "x_m": self.tractions["x_m"].variable,
-        }
-        return xr.Dataset(variables, coordinates, self._attributes())
+        coordinates = variables(("time_s",), {"time_s": time_s}) | {"x_m": self.tractions["x_m"].variable}
+        return xr.Dataset(variables(("time_s", "x_m"), fields), coordinates, self._attributes())
 
 
 def open_run(folder: Path, kept: Kept | None = None) -> OpenRun:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,20 +30,9 @@ from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, belongs, result_fi
 
 STATIC_COLUMNS = ("x_m", "t_s_Pa", "p_s_Pa")
 FRONT_COLUMNS = (
-    "front_id",
-    "x_m",
-    "onset_s",
-    "direction",
-    "v_tip_m_per_s",
-    "t_s_Pa",
-    "p_s_Pa",
-    "t_d_Pa",
-    "p_d_Pa",
-    "t_r_Pa",
-    "p_r_Pa",
-    "U_s_J_per_m3",
-    "U_r_J_per_m3",
-)
+    "front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", "t_s_Pa", "p_s_Pa", "t_d_Pa", "p_d_Pa",
+    "t_r_Pa", "p_r_Pa", "U_s_J_per_m3", "U_r_J_per_m3",
+)  # fmt: skip
 # Columns of fracture.csv that pages and tables take.
 FRACTURE_COLUMNS = ("breakdown_work_J_per_m2", "cohesive_zone_m", "G_slip_J_per_m2")
 # What the time says that a tip takes at a row of fronts.csv; there is a speed with the first alone.
@@ -51,33 +41,14 @@ SPEED_KINDS = ("front", "triggered", "simultaneous", "path_end")
 HISTORY_FIELDS = ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")
 # Data sets of probes.h5, [times, probes].
 PROBE_FIELDS = (
-    "u_x_m",
-    "u_y_m",
-    "v_x_m_per_s",
-    "v_y_m_per_s",
-    "strain_xx",
-    "strain_yy",
-    "strain_zz",
-    "strain_xy",
-    "stress_xx_Pa",
-    "stress_yy_Pa",
-    "stress_zz_Pa",
-    "stress_xy_Pa",
-)
+    "u_x_m", "u_y_m", "v_x_m_per_s", "v_y_m_per_s", "strain_xx", "strain_yy", "strain_zz", "strain_xy",
+    "stress_xx_Pa", "stress_yy_Pa", "stress_zz_Pa", "stress_xy_Pa",
+)  # fmt: skip
 # Columns of energy.csv without their unit, J per m of thickness.
 ENERGY_TERMS = (
-    "strain",
-    "kinetic",
-    "machine",
-    "top_work",
-    "trigger_work",
-    "prestress_work",
-    "friction_work",
-    "contact_work",
-    "damping_work",
-    "boundary_work",
-    "coupling_work",
-)
+    "strain", "kinetic", "machine", "top_work", "trigger_work", "prestress_work", "friction_work",
+    "contact_work", "damping_work", "boundary_work", "coupling_work",
+)  # fmt: skip
 VTK_QUAD = 9
 BLOCK_BYTES = 4096  # a head of a file of rows is of whole ones
 
@@ -137,6 +108,11 @@ class Front:
         return float(np.interp(time_s, np.maximum.accumulate(self.onset_s), self.x_m))
 
 
+def longest_each_way(fronts: Iterable[Front]) -> dict[int, Front]:
+    """By direction; the first of equal ones."""
+    return {front.direction: front for front in sorted(fronts, key=lambda front: (front.length_m, -front.id))}
+
+
 @dataclass(frozen=True)
 class Fields:
     """The mesh of fields.vtkhdf and the times of its steps; the fields themselves are read step by step."""
@@ -159,17 +135,6 @@ class Fields:
         if not np.isfinite(speed).all():
             raise DataError(f"{self.file}: a number of step {step} of velocity_m_per_s is not finite")
         return speed
-
-
-@dataclass(frozen=True)
-class Probes:
-    """What strain gauges record, from probes.h5."""
-
-    names: tuple[str, ...]  # [probes]
-    x_m: np.ndarray  # [probes]
-    y_m: np.ndarray  # [probes]; below 0 in the base
-    time_s: np.ndarray  # [times]
-    fields: dict[str, np.ndarray]  # by the names of PROBE_FIELDS. [times, probes]
 
 
 @dataclass(frozen=True)
@@ -357,21 +322,6 @@ def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.
     rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
     fields = {name: rows[:, 1 + k * n : 1 + (k + 1) * n] for k, name in enumerate(names)}
     return rows[:, 0], fields
-
-
-def read_probes(file: Path) -> Probes:
-    file = result_file(file)
-    with open_hdf5(file) as hdf5:
-        if "name" not in hdf5:
-            raise DataError(f"{file}: no data set 'name'")
-        names = tuple(str(name) for name in hdf5["name"].asstr()[()])
-        x_m, y_m, time_s = (dataset(hdf5, name, 1)[()] for name in ("x_m", "y_m", "time_s"))
-        fields = {name: dataset(hdf5, name, 2)[()] for name in PROBE_FIELDS}
-    shape = len(time_s), len(names)
-    require(len(x_m) == len(y_m) == shape[1], file, "names and places differ in number")
-    for name, values in fields.items():
-        require(values.shape == shape, file, f"{name} is {values.shape}; it must be {shape}")
-    return Probes(names, x_m, y_m, time_s, fields)
 
 
 def read_fields(file: Path) -> Fields:

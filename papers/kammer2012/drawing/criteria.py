@@ -56,7 +56,7 @@ def tail(run: OpenRun, front: Front) -> np.ndarray:
     A front that may still run when the record ends has no such end.
     """
     count = counted(run, front)
-    if slow_end(run, front) == len(count) and run.told(front, "end") == "record_end":
+    if slow_end(speed(run)(front)) == len(count) and run.told(front, "end") == "record_end":
         return np.full(len(count), False)
     return count & (np.abs(front.x_m - front.x_m[count][-1]) <= TAIL_M * (1 + 1e-9))
 

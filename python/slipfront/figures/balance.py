@@ -119,11 +119,10 @@ def draw_balances(every: list[Books]) -> Drawing:
         figure,
         "Energy over time, per unit thickness. Above: change of the stored energies since the start, and the "
         "works done on the plate; what leaves it is negative. Closing gaps: what is lost where the plate "
-        "lands on its base again. Below, on a logarithmic scale and over the "
-        f"largest change above: terms of at most {100 * SMALL:g} % of it, the coupling between the "
-        "sub-cycled layer and the other cells, an error of the time stepping, and the imbalance: change "
-        "less all works, "
-        f"each computed by itself. {'; '.join(closing(books) for books in every)}.",
+        "lands on its base again. Below, on a logarithmic scale and over the largest change above: terms of "
+        f"at most {100 * SMALL:g} % of it, the coupling between the sub-cycled layer and the other cells, an "
+        "error of the time stepping, and the imbalance: change less all works, each computed by itself. "
+        f"{'; '.join(closing(books) for books in every)}.",
     )
 
 

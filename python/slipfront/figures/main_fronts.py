@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from slipfront.opened import OpenRun
-from slipfront.read import Front
+from slipfront.read import Front, longest_each_way
 
 # Shorter fronts, mostly secondary ones late in a record, would hide the events' own in the plots of V_tip.
 DRAWN_LENGTH_M = 10e-3
@@ -49,24 +49,22 @@ def beyond_origin(run: OpenRun, x_m: np.ndarray) -> np.ndarray:
     return np.abs(x_m - began[0]) >= NUCLEATION_M
 
 
-def slow_end(run: OpenRun, front: Front) -> int:
-    """Index of the first node from which V_tip stays slow to the end; undefined speeds decide nothing."""
-    limit = SLOW_OVER_C_L * run.c_L_m_per_s
-    fast, slow = (
-        np.flatnonzero(part) for part in (front.v_tip_m_per_s >= limit, front.v_tip_m_per_s < limit)
-    )
-    last_fast = fast[-1] if len(fast) > 0 else -1
-    after = slow[slow > last_fast]
-    return int(after[0]) if len(after) > 0 else len(front.x_m)
+def slow_end(v_over_c_L: np.ndarray) -> int:
+    """Index of the first node from which V_tip stays slow to the end; undefined speeds decide nothing. A slow
+    stretch behind which the front is fast again is part of it."""
+    fast = np.flatnonzero(v_over_c_L >= SLOW_OVER_C_L)
+    behind = fast[-1] + 1 if len(fast) > 0 else 0
+    slow = np.flatnonzero(v_over_c_L[behind:] < SLOW_OVER_C_L)
+    return int(behind + slow[0]) if len(slow) > 0 else len(v_over_c_L)
 
 
 def counted(run: OpenRun, front: Front) -> np.ndarray:
     """Whether nodes of a front count: beyond the origin, to the last before V_tip stays slow. [points]"""
-    return beyond_origin(run, front.x_m) & (np.arange(len(front.x_m)) < slow_end(run, front))
+    end = slow_end(front.v_tip_m_per_s / run.c_L_m_per_s)
+    return beyond_origin(run, front.x_m) & (np.arange(len(front.x_m)) < end)
 
 
 def main_fronts(run: OpenRun) -> list[Front]:
     """The longest front in each direction that starts at the event's origin, where any of its nodes count."""
     own = [f for f in run.front_list if not beyond_origin(run, f.x_m[:1])[0] and counted(run, f).any()]
-    each_way = [[f for f in own if f.direction == way] for way in (-1, 1)]
-    return [max(fronts, key=lambda f: f.length_m) for fronts in each_way if fronts]
+    return [front for _, front in sorted(longest_each_way(own).items())]

@@ -39,8 +39,7 @@ ENDS = {
 DEFINITIONS = (
     "V<sub>tip</sub>: speed of the front's tip. t<sub>s</sub>, p<sub>s</sub>: tractions before the event; "
     "t<sub>d</sub>, p<sub>d</sub>: when the tip is l* short of the point; U<sub>s</sub>, U<sub>r</sub>: "
-    "energy density "
-    "there when the tip arrives and when it is about to go on. Definitions: docs/theory.md."
+    "energy density there when the tip arrives and when it is about to go on. Definitions: docs/theory.md."
 )
 
 
@@ -115,8 +114,7 @@ def thinning(history: ThinHistory) -> str:
         return "Every time and node of the record is drawn, to three digits."
     return (
         f"To keep this page small it holds {' and '.join(skipped)}, to three digits; of the slip rate the "
-        "largest in "
-        "each block of them. Fronts are drawn in full. The whole record: interface.h5."
+        "largest in each block of them. Fronts are drawn in full. The whole record: interface.h5."
     )
 
 
@@ -198,8 +196,7 @@ def criteria_section(panels: list[str], folded: bool = False, more: str = "") ->
         "in all panels and in the diagrams above. A click keeps it. Box or lasso (in the bar above the plot) "
         "select many.</p>",
         f"<p>{DEFINITIONS} Full colour: nodes of main fronts, beyond the trigger and before they arrest; "
-        "pale: "
-        f"all others. Lines: wave speeds. {more}</p>",
+        f"pale: all others. Lines: wave speeds. {more}</p>",
     )
 
 
@@ -210,12 +207,11 @@ def energy_section(is_zero: bool = False) -> str:
         "energy",
         "Energy",
         plot("energy-plot", "Energies and works over time, stacked, and what they leave open"),
-        "<p>Per unit thickness, since the start. Above zero: where energy comes from, such as strain "
-        "energy that is released; below: where it goes. Both sides are equally large but for the imbalance, "
-        "which is drawn below over the largest term: each term is computed by itself. Closing gaps: kinetic "
-        "energy lost where the bodies meet again. Sub-steps: an error of the time stepping, where the "
-        "layer at "
-        "the interface moves in smaller steps than the rest.</p>",
+        "<p>Per unit thickness, since the start. Above zero: where energy comes from, such as strain energy "
+        "that is released; below: where it goes. Both sides are equally large but for the imbalance, which "
+        "is drawn below over the largest term: each term is computed by itself. Closing gaps: kinetic energy "
+        "lost where the bodies meet again. Sub-steps: an error of the time stepping, where the layer at the "
+        "interface moves in smaller steps than the rest.</p>",
     )
 
 
@@ -233,9 +229,8 @@ def snapshots_section(has_any: bool, n_of: str = "", is_still: bool = False) -> 
         SNAPSHOTS,
         time_slider("snapshots", play=True),
         plot("snapshots-plot", "Magnitude of the particle velocity in the bodies"),
-        "<p>Means over square pixels; colours go with the square root of the velocity's magnitude, within "
-        "1 % "
-        f"of the scale's end. Triangles: tips of fronts, pointing where they go. {n_of}</p>",
+        "<p>Means over square pixels; colours go with the square root of the velocity's magnitude, within 1 "
+        f"% of the scale's end. Triangles: tips of fronts, pointing where they go. {n_of}</p>",
     )
 
 

@@ -10,7 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import to_hex
 
-from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
+from slipfront.figures.sequence import RATE_RANGE_M_PER_S, phases, slip_after_events
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
 from slipfront.opened_sequence import OpenSequence, open_sequence

@@ -277,9 +277,8 @@ def start(run: OpenRun) -> str:
             return f"trigger over {zone} at the {side} edge: {forms.get(str(form), words(form))}"
         case "nucleation", _:
             patch = (
-                f"patch around x = {si(run, 'nucleation', 'x_m')}, "
-                f"{si(run, 'nucleation', 'half_length_m')} to "
-                f"each side and a taper of {si(run, 'nucleation', 'taper_m')}"
+                f"patch around x = {si(run, 'nucleation', 'x_m')}, {si(run, 'nucleation', 'half_length_m')} "
+                f"to each side and a taper of {si(run, 'nucleation', 'taper_m')}"
             )
             if run.entry("nucleation", "form") == "overstress":
                 return f"{patch}: shear of {si(run, 'nucleation', 'overstress_Pa')} added{rise(run)}"

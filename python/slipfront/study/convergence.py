@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from slipfront.files import DataError
+from slipfront.read import median
 from slipfront.study.runs import Printed, Study, make_parser, number, numbers, printed
 from slipfront.study.runs import main as study_main
-from slipfront.study.sequence import Limit, Summary, extrapolate, median, summarise
+from slipfront.study.sequence import Limit, Summary, extrapolate, summarise
 from slipfront.study.speeds import Place, Run
 from slipfront.sweep.engine import default_workers
 from slipfront.sweep.values import Value

@@ -16,7 +16,8 @@ from slipfront import command
 from slipfront.files import DataError, exists, is_folder, read_json_table
 from slipfront.folder import UNFINISHED, publication
 from slipfront.opened import open_run
-from slipfront.study.speeds import Run, main_fronts
+from slipfront.read import longest_each_way
+from slipfront.study.speeds import Run
 from slipfront.sweep import folder as places
 from slipfront.sweep.command import once_each
 from slipfront.sweep.definition import Sweep, flattened
@@ -157,7 +158,7 @@ class Study:
         if wrong is None:
             run, margin_m = open_run(place), self.case["fronts.trigger_margin_m"]
             left_out_m = [(a - margin_m, b + margin_m) for a, b in Slipped(run).driven_m]
-            return Run(run.info, main_fronts(run.front_list), left_out_m)
+            return Run(run.info, longest_each_way(run.front_list), left_out_m)
         if reason := places.blew_up(place):
             return Run(read_json_table(place / UNFINISHED / "run.json"), {}, [], reason)
         raise DataError(f"{point.words}: {places.failure_of(self.folder / RUNS, point) or wrong}")

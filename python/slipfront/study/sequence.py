@@ -9,6 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
+
+from slipfront.read import median
 
 UNDEFINED = math.nan
 #: The scheme is of second order: a higher observed order is an accident of three values, and extrapolation
@@ -61,24 +64,15 @@ def extrapolate(q: Sequence[float], f: Sequence[float]) -> Limit:
     if ratio < 0:
         return Limit(f, ALTERNATING, value=0.5 * (f[1] + f[2]))
 
-    def is_below(order: float) -> bool:
-        """Of an order, whose ratio rises with it."""
-        return bool(((q[0] / q[1]) ** order - 1) / (1 - (q[2] / q[1]) ** order) < ratio)
+    def excess(order: float) -> float:
+        """Of the ratio of an order, which rises with it."""
+        return math.expm1(order * math.log(q[0] / q[1])) / -math.expm1(order * math.log(q[2] / q[1])) - ratio
 
-    low, high = 0.0, 1.0
-    while is_below(high):
+    high = 1.0
+    while excess(high) < 0:
         high *= 2
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if is_below(middle) else (low, middle)
-    order = 0.5 * (low + high)
+    order = float(brentq(excess, 1e-12, high, xtol=1e-14)) if excess(1e-12) < 0 else 0.0
     return Limit(f, MONOTONE, order, f[2] - last / ((q[1] / q[2]) ** min(order, HIGHEST_ORDER) - 1))
-
-
-def median(values: np.ndarray) -> float:
-    """Of those that are defined."""
-    defined = values[~np.isnan(values)]
-    return float(np.median(defined)) if defined.size else UNDEFINED
 
 
 def p90(values: np.ndarray) -> float:

@@ -50,11 +50,6 @@ class Run:
         return places
 
 
-def main_fronts(fronts: list[Front]) -> dict[int, Front]:
-    """The longest in each direction, the first of equal ones."""
-    return {front.direction: front for front in sorted(fronts, key=lambda front: (front.length_m, -front.id))}
-
-
 def v_tip_at(front: Front, x_m: float) -> float:
     """V_tip where the tip passes x, linear between its nodes; NaN beyond them."""
     share = (x_m - front.x_m[:-1]) / np.diff(front.x_m)

@@ -40,9 +40,8 @@ class Needs:
         time = f"{time_s:.0f} s" if time_s < 100 else f"{time_s / 60:.0f} min"
         of_events = "; of a sequence time and disk are those of one event" if self.of_events else ""
         return (
-            f"{self.n_points} runs, {self.n_at_once} at a time: about {time}, "
-            f"{self.memory_bytes / GIGA:.2g} GB of memory, {self.disk_bytes / GIGA:.2g} GB on disk at most"
-            f"{of_events}"
+            f"{self.n_points} runs, {self.n_at_once} at a time: about {time}, {self.memory_bytes / GIGA:.2g} "
+            f"GB of memory, {self.disk_bytes / GIGA:.2g} GB on disk at most{of_events}"
         )
 
 

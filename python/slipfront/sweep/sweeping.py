@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sweep from its definition to its tables."""
+"""A sweep from its definition to its tables, or to a script for an array of Slurm jobs, each of which runs a
+share of the points."""
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 from collections.abc import Callable
@@ -13,16 +15,42 @@ from typing import Any
 
 from tqdm.auto import tqdm
 
-from slipfront.sweep import engine
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
+from slipfront.sweep.engine import DONE, FAILED, Outcome, Task, outcomes, stoppable
 from slipfront.sweep.needs import needs_of, require_disk, require_memory, require_valid
 from slipfront.sweep.points import Point
-from slipfront.sweep.program import find_program
+from slipfront.sweep.program import GIGA, VARIABLE
 from slipfront.sweep.tables import collect, table_lines
-from slipfront.sweep.work import DONE, FAILED, Outcome, Task
 
 MOST_TOLD = 10  # failures that are listed
+
+MOST_JOBS = 100
+SPARE = 3  # times the expected time, since machines differ
+LEAST_MINUTES = 10
+MEGA = 1e6
+WORKER_BYTES = 0.15 * GIGA  # of the sweep itself in a job
+
+SLURM_SCRIPT = """\
+#!/bin/bash
+# {title}: {n_points} points in {n_jobs} shares. Submit with
+#   sbatch {script}
+# and when the array has ended, make the tables (it runs points that a job did not come to):
+#   {collect}
+#SBATCH --job-name=slipfront-sweep
+#SBATCH --array=1-{n_jobs}
+#SBATCH --ntasks=1
+#SBATCH --cpus-per-task=1
+#SBATCH --mem={memory_mb}M
+#SBATCH --time={minutes}
+#SBATCH --output={log}
+#SBATCH --signal=B:TERM@60
+#SBATCH --requeue
+export {variable}={program}
+export PYTHONPATH={package}
+# exec: Slurm's warning 60 s before the time is up is the sweep's; a job that runs again goes on.
+exec {share}
+"""
 
 
 @dataclass(frozen=True)
@@ -89,18 +117,14 @@ def check(sweep: Sweep, folder: Path, program: Path, missing: list[Point], how: 
     how.tell(needs.words)
 
 
-def run_missing(sweep: Sweep, folder: Path, tasks: list[Task], how: How) -> tuple[list[Outcome], bool]:
+def run_missing(folder: Path, tasks: list[Task], how: How) -> tuple[list[Outcome], bool]:
     """Outcomes of all tasks, and whether a signal has ended them. Why one has failed is kept beside it."""
     if not tasks:
         return [], False
-    stop = engine.Stop(tasks[0].stop)
-    if how.scheduler is not None:
-        found = engine.by_scheduler(tasks, how.scheduler)
-    else:
-        found = engine.side_by_side(tasks, min(how.workers, len(tasks)))
     done = []
     hidden = True if how.quiet or sys.stderr is None else None  # None: where there is no terminal
-    with stop.catching(), closing(found):
+    found = outcomes(tasks, how.workers, how.scheduler)
+    with stoppable(tasks[0].stop) as asked, closing(found):
         for outcome in tqdm(found, "done", len(tasks), disable=hidden):
             done.append(outcome)
             file = places.error_file(folder, outcome.point)
@@ -108,17 +132,14 @@ def run_missing(sweep: Sweep, folder: Path, tasks: list[Task], how: How) -> tupl
                 places.write_whole(file, outcome.message + "\n")
             elif outcome.status == DONE:
                 file.unlink(missing_ok=True)
-    return done, stop.is_wanted
+    return done, asked.is_set()
 
 
 def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
     """Runs what is missing, and makes the tables where nothing is left to be run.
 
     Raises DataError for what is refused; points that fail are told by the result."""
-    sweep.require_sound()
-    program = find_program()
-    identity = places.identity_of(sweep, program)
-    places.require_usable(folder, sweep, identity)
+    program, identity = places.begun(sweep, folder)
     missing = missing_of(sweep, folder, how)
     if missing:
         check(sweep, folder, program, missing, how)
@@ -128,10 +149,40 @@ def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
         stop = where / ("stop" if how.share is None else "stop-{}-of-{}".format(*how.share))
         settings = sweep.settings()
         tasks = [Task(str(program), case, settings, where, stop, p, sweep.keep) for p in missing]
-        outcomes, is_interrupted = run_missing(sweep, folder, tasks, how)
+        ended, is_interrupted = run_missing(folder, tasks, how)
         table = None
         if how.share is None and not is_interrupted:
             table = collect(folder, sweep, identity["program"])
             if (table.status == DONE).all():
                 shutil.rmtree(folder / places.STATES, ignore_errors=True)
-        return Finished(folder, outcomes, table, is_interrupted)
+        return Finished(folder, ended, table, is_interrupted)
+
+
+def array_script(sweep: Sweep, folder: Path, script: Path) -> list[str]:
+    """Checks all points, writes the folder's definition and the script; returns what to print."""
+    program, identity = places.begun(sweep, folder)
+    points = sweep.points()
+    require_valid(sweep, program, points, quiet=False)
+    n_jobs = min(MOST_JOBS, len(points))
+    needs = needs_of(sweep, program, points, n_jobs)
+    require_disk(needs, folder)
+    python = [sys.executable, "-m", "slipfront", "sweep", "--restart", str(folder.resolve())]
+    package = shlex.quote(str(Path(__file__).resolve().parents[2]))
+    text = SLURM_SCRIPT.format(
+        title=sweep.case.name,
+        n_points=len(points),
+        n_jobs=n_jobs,
+        script=script,
+        collect=f"PYTHONPATH={package} {shlex.join(python)}",
+        memory_mb=int((needs.memory_bytes / n_jobs + WORKER_BYTES) / MEGA) + 1,
+        minutes=max(LEAST_MINUTES, int(SPARE * needs.time_s / n_jobs / 60) + 1),
+        log=shlex.quote(str(folder.resolve() / "slurm-%a.log")),
+        variable=VARIABLE,
+        program=shlex.quote(str(program)),
+        package=package,
+        share=f'{shlex.join(python)} --quiet --share "$SLURM_ARRAY_TASK_ID/{n_jobs}"',
+    )
+    with places.held(folder):
+        places.write_definition(folder, sweep, identity)
+    places.write_whole(script, text)
+    return [f"script: {script}, {n_jobs} jobs; submit it with sbatch"]
