@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from slipfront import command
+from slipfront.command import MATERIAL, option
 from slipfront.files import DataError
 from slipfront.measures import LENGTHS_AND_TIMES, FrontSettings, find_fronts, slices_of
 from slipfront.onsets import NONE, read_onsets
@@ -23,7 +23,6 @@ TRACTIONS = ("t_s_Pa", "p_s_Pa")
 OPTIONS = (*LENGTHS_AND_TIMES, "never_slipped", "place_error_m", "time_error_s")  # by their names in Python
 SLOW = 1e-3  # of a wave speed: ruptures run at 0.01 and more of it; fronts below it creep
 MARK = "# fronts by slipfront fronts\n"  # by it a file is known that may be replaced
-MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -55,7 +54,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     speeds = parser.add_argument_group("wave speed, for V_tip/c_L: given, or of a material").add_argument
     speeds("--c-l-m-per-s", type=float, help="longitudinal wave speed")
     for name in MATERIAL:
-        speeds(f"--{name.lower().replace('_', '-')}", dest=name, type=float)
+        speeds(option(name), dest=name, type=float)
     speeds("--plane", choices=("stress", "strain"), help="of the material; by default stress")
     return parser.parse_args(arguments)
 
@@ -73,7 +72,7 @@ def wave_speeds_of(options: argparse.Namespace) -> dict[str, float]:
         if options.plane is not None:
             raise DataError("--plane counts with a material alone; give one, or leave it out")
         return {}
-    missing = [f"--{name.lower().replace('_', '-')}" for name in MATERIAL if name not in given]
+    missing = [option(name) for name in MATERIAL if name not in given]
     if missing:
         raise DataError(f"a material needs {', '.join(missing)} as well")
     try:
@@ -134,7 +133,7 @@ def rows(fronts: xr.Dataset, c_L_m_per_s: float | None) -> str:
 
 def in_words(text: str) -> str:
     """Options by their names on the command line."""
-    return re.sub("|".join(OPTIONS), lambda found: f"--{found[0].replace('_', '-')}", text)
+    return command.in_options(text, OPTIONS)
 
 
 def speed_in_words(speed_and_interval: np.ndarray, of_waves: dict[str, float]) -> str:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from slipfront import command
+from slipfront.command import MATERIAL, option
 from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
 from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, from_arms, gauges_of, read_gauges
@@ -22,7 +22,6 @@ from slipfront.opened import OpenRun, open_run
 from slipfront.tip_fit import TipFit, bodies_of, fit_tips, limiting_speed_m_per_s
 
 MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
-MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 OF_FIT = (
     "tip_s", "tip_error_s", "speed_m_per_s", "speed_error_m_per_s", "K_Pa_sqrt_m", "K_error_Pa_sqrt_m",
     "Gamma_J_per_m2", "Gamma_error_J_per_m2",
@@ -39,10 +38,6 @@ OF_FITS = (
     "speed_m_per_s", "direction", "r_min_m", "r_max_m", "no_step", "passages", *MATERIAL, "plane", "base",
 )  # fmt: skip
 OF_COMPARISONS = ("within_s",)
-
-
-def option(name: str) -> str:
-    return f"--{name.lower().replace('_', '-')}"
 
 
 def interval(text: str) -> tuple[float, float]:
@@ -285,7 +280,7 @@ def work(options: argparse.Namespace) -> list[str]:
 
 def in_words(text: str) -> str:
     """Options by their names on the command line."""
-    return re.sub(rf"\b({'|'.join(OPTIONS)})\b", lambda found: option(found[0]), text)
+    return command.in_options(text, OPTIONS)
 
 
 def main(arguments: list[str]) -> int:

@@ -12,7 +12,7 @@ from slipfront.files import DataError
 from slipfront.read import Front, longest_each_way
 from slipfront.study.convergence import DAMPING, FACTOR, SIZE, SUBSTEPS, plans_of, points_of
 from slipfront.study.interface_step import Stepping, cheapest, extrapolated
-from slipfront.study.sequence import (
+from slipfront.study.speeds import (
     ALTERNATING,
     CONVERGED,
     FEWEST_STATIONS,
@@ -23,10 +23,11 @@ from slipfront.study.sequence import (
     NOT_CONVERGED,
     TOO_FEW,
     UNKNOWN,
+    Place,
+    Run,
     extrapolate,
     summarise,
 )
-from slipfront.study.speeds import Place, Run
 
 Q = (4.0, 2.0, 1.0)
 NAN = math.nan

@@ -16,16 +16,15 @@ from slipfront import command
 from slipfront.files import DataError, exists, is_folder, read_json_table
 from slipfront.folder import UNFINISHED, publication
 from slipfront.opened import open_run
+from slipfront.program import answer, find_program, version_of, with_settings
 from slipfront.read import longest_each_way
 from slipfront.study.speeds import Run
 from slipfront.sweep import folder as places
 from slipfront.sweep.command import once_each
 from slipfront.sweep.definition import Sweep, flattened
 from slipfront.sweep.outcome import Slipped
-from slipfront.sweep.points import Point
-from slipfront.sweep.program import answer, find_program, version_of, with_settings
+from slipfront.sweep.points import Point, Value, text_of, value_of
 from slipfront.sweep.sweeping import How, carry_out
-from slipfront.sweep.values import Value, text_of, value_of
 
 RUNS = "runs"
 #: Of any study; one of another kind may have been in the folder before.

@@ -20,9 +20,9 @@ from typing import Any
 
 from slipfront.files import DataError, exists
 from slipfront.folder import UNFINISHED
+from slipfront.program import last_line, with_settings
 from slipfront.sweep import folder as places
 from slipfront.sweep.points import Point
-from slipfront.sweep.program import last_line, with_settings
 
 LOOK_EVERY_S = 0.05
 PATIENCE_S = 60  # of a run that is asked to stop, until it is ended

@@ -28,11 +28,10 @@ from slipfront.files import (
     read_text,
     read_toml,
 )
-from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, inside, read_list, sha256, verify_checksums
+from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, inside, problem, read_list, sha256
+from slipfront.program import find_program, version_of
 from slipfront.sweep.definition import ENTRIES, Sweep, flattened, is_value
-from slipfront.sweep.points import Point
-from slipfront.sweep.program import find_program, version_of
-from slipfront.sweep.values import Value, text_of, value_of
+from slipfront.sweep.points import Point, Value, text_of, value_of
 
 DEFINITION = "sweep.json"
 POINTS = "points"
@@ -175,12 +174,24 @@ def has_value(case: dict[str, Any], key: str, value: Value) -> bool:
     return case.get(key) in (wanted, value)
 
 
+def damage(place: Path) -> str | None:
+    """What is wrong with a folder's files, also with those of the events of a sequence, in one line."""
+    sums = read_list(place) if is_folder(place) else None
+    if sums is None:
+        return "no results"
+    for name, expected in sums.items():
+        wrong = problem(place, name, expected)
+        if wrong is None and Path(name).name == LIST:
+            wrong = damage((place / name).parent)
+        if wrong:
+            return wrong
+    return None
+
+
 def what_is_wrong(place: Path, point: Point) -> str | None:
     """Why a folder does not hold a point's complete results, in one line; None where it does."""
-    if not is_folder(place) or read_list(place) is None:
-        return "no results"
-    if wrong := verify_checksums(place):
-        return wrong[0]
+    if wrong := damage(place):
+        return wrong
     case = flattened(read_toml(place / CASE))
     for key, value in point.values.items():
         if not has_value(case, key, value):

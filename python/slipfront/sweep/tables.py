@@ -23,8 +23,7 @@ from slipfront.sweep.outcome import (
     teller,
     waves_over_c_L,
 )
-from slipfront.sweep.points import Point, short_names
-from slipfront.sweep.values import as_array, text_of, values_of
+from slipfront.sweep.points import Point, as_array, short_names, text_of, values_of
 from slipfront.units import Unit, engineering, name_of, unit_of
 
 if TYPE_CHECKING:
