@@ -7,14 +7,14 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import events
+import slipfront
 from events import Collapse, Event, event_of
 from numpy.typing import ArrayLike
 from scorecard import Claim, Reproduction
 from scorecard import scorecard as claims_of
-from slipfront import _core
-from slipfront.given import column, flag, in_order, instance, number, refusing, text
-from slipfront.measures import Arrays, history_arrays, tractions_at
-from slipfront.running import CaseLike, make_case
+from slipfront.given import column, flag, in_order, instance, refusing, text
+from slipfront.measures import Arrays
+from slipfront.running import CaseLike
 
 
 def outcome(
@@ -33,12 +33,11 @@ def outcome(
     history: time_s [times], x_m [nodes], slip_rate_m_per_s, t_Pa and p_Pa [times, nodes]. tractions: t_s_Pa
     and p_s_Pa [nodes] before the event. Contact is where p_s is above 0, its inside loading.edge_margin_m
     from the ends. Raises CaseError where arrays do not fit each other or the case cannot be used."""
-    threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
-    shear_m = number(critical_shear_m, "critical_shear_m")
-    called, prepared, arrays = text(name, "name"), make_case(case, None, tables), history_arrays(history)
-    t_s, p_s = tractions_at(arrays[1], tractions)
+    called, prepared = text(name, "name"), slipfront.case(case, **tables)
+    found = slipfront.event_of_history(
+        prepared, history, tractions, threshold_m_per_s=threshold_m_per_s, critical_shear_m=critical_shear_m
+    )
     with refusing():
-        found = _core.event_of_history(prepared, *arrays, t_s, p_s, threshold, shear_m)
         return event_of(called, prepared, found)
 
 

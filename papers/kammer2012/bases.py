@@ -249,7 +249,7 @@ def study(options: Namespace) -> list[str]:
         on_bases = [OnBase(base, [next(rest) for _ in of_base]) for base, of_base in runs.items()]
         bases = [base_json(on, collapse_without_tails(on.mains)) for on in on_bases]
         found = {
-            "version": slipfront._core.version(),
+            "version": slipfront.version(),
             "quick": options.quick,
             "n_runs": batch.n_runs,
             "n_quiet": batch.n_quiet,

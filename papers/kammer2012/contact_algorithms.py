@@ -15,8 +15,9 @@ from matplotlib.figure import Figure
 from slipfront.figures.drawing import write_figure
 from slipfront.figures.style import PAGE_MM, RC
 from slipfront.files import read_json
+from slipfront.opened import open_run
 from slipfront.pages import Tables, command_to_renew, table
-from slipfront.read import Front, read_fronts
+from slipfront.read import Front
 
 EVENTS = ("left", "spontaneous", "right", "spontaneous_mu_k_1.0")
 LAWS: dict[str, dict[str, Any]] = {
@@ -62,8 +63,8 @@ def run(event: str, folder: Path, changes: dict[str, Any]) -> Event:
     if not folder.exists():
         case = Path(__file__).with_name(f"{event}.toml")
         slipfront.run(case, changes | OUTPUT, output=folder, progress=False)
-    energy = read_json(folder / "run.json")["energy_at_end"]
-    return Event(read_fronts(folder / "fronts.csv"), energy["friction_work_J_per_m"])
+    found = open_run(folder)
+    return Event(found.front_list, found.fact("energy_at_end.friction_work_J_per_m"))
 
 
 def compare(a: Front, b: Front) -> np.ndarray:

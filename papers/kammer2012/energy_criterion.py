@@ -17,10 +17,10 @@ from matplotlib.lines import Line2D
 from slipfront.figures import style
 from slipfront.figures.drawing import write_figure
 from slipfront.figures.main_fronts import counted, main_fronts
-from slipfront.files import DataError, read_table
-from slipfront.folder import result_file
+from slipfront.files import DataError
+from slipfront.opened import OpenRun, open_run
 from slipfront.pages import Tables, command_to_renew, expecting, read_result, table
-from slipfront.read import Front, Run, read_run
+from slipfront.read import Front, ratio
 
 AMOUNTS = ("5", "10", "20", "40", "80")
 CHOSEN, HELD = "chosen", "chosen, but held"
@@ -41,7 +41,7 @@ CRITERIA = {"energy": "energy_rise", "t_d/p_d": "dynamic_ratio", "t_s/p_s": "sta
 
 @dataclass(frozen=True)
 class MainFront:
-    run: Run
+    run: OpenRun
     front: Front
     pressure_d_over_s: np.ndarray  # p_d / p_s [points]
 
@@ -66,12 +66,11 @@ class MainFront:
 
 
 def read_main_fronts(folder: Path) -> list[MainFront]:
-    run = read_run(folder)
-    table = read_table(result_file(folder / "fronts.csv"))
-    ids, ways = table.numbers("front_id"), table.numbers("direction")
-    with np.errstate(invalid="ignore"):  # no pressure at the ends of contact
-        ratio = table.numbers("p_d_Pa") / table.numbers("p_s_Pa")
-    return [MainFront(run, f, ratio[(ids == f.id) & (ways == f.direction)]) for f in main_fronts(run)]
+    run = open_run(folder)
+    ids = run.fronts["front_id"].to_numpy()
+    # There is no pressure at the ends of contact.
+    pressures = ratio(run.fronts["p_d_Pa"].to_numpy(), run.fronts["p_s_Pa"].to_numpy())
+    return [MainFront(run, f, pressures[ids == f.id]) for f in main_fronts(run)]
 
 
 def first_front(folder: Path, parameter: str, value: float) -> MainFront:
@@ -171,7 +170,7 @@ def draw_over_x(speeds: Axes, pressures: Axes, lefts: dict[str, MainFront]) -> N
             ax.plot(x[shown], y[shown], color=COLOURS[trigger], label=trigger)
     speeds.axhline(1, **style.REFERENCE)
     run = lefts[CHOSEN].run
-    peak_mm = style.mm(run.static_x_m[np.nanargmax(np.where(run.static_x_m > 0.1, run.static_ratio, np.nan))])
+    peak_mm = style.mm(run.x_m[np.nanargmax(np.where(run.x_m > 0.1, run.static_ratio, np.nan))])
     for ax in (speeds, pressures):
         style.x_axis(ax, run)
         ax.axvline(float(peak_mm), **style.REFERENCE)

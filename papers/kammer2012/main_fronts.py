@@ -8,11 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from events import TAIL_M, Collapse, Event, Front, Mask, collapse, longest
-
-# Fronts that start no farther than this from the first onset start at the nucleation. Points nearer than this
-# to the start of a spontaneously nucleated front do not count.
-NUCLEATION_REACH_M = 5e-3
-SLOW_SHARE = 0.1  # a main front is over where its speed stays below this share of c_L
+from slipfront.figures.main_fronts import NUCLEATION_M, slow_end
 
 
 @dataclass(frozen=True)
@@ -37,28 +33,22 @@ def starts_the_event(event: Event, front: Front) -> bool:
     start_m = front.x_m[0]
     if event.triggered:
         return bool(event.near_trigger(start_m))
-    return bool(abs(start_m - event.first_onset_x_m) <= NUCLEATION_REACH_M)
+    return bool(abs(start_m - event.first_onset_x_m) <= NUCLEATION_M)
 
 
 def first_front(event: Event, direction: int) -> Front | None:
     """The longest front in a direction that starts at its event's nucleation or trigger. In a triggered
     event: that starts in the trigger zone or in the margin beyond it, where points do not count. In any
-    other: that starts within NUCLEATION_REACH_M of the first onset. Fronts in the wake of others, and those
+    other: that starts within NUCLEATION_M of the first onset. Fronts in the wake of others, and those
     that nucleate ahead of them, are none."""
     return longest(f for f in event.fronts if f.direction == direction and starts_the_event(event, f))
 
 
 def counted_points(event: Event, front: Front) -> Front:
-    """From beyond the trigger zone and its margin, or NUCLEATION_REACH_M from where a front nucleated by
-    itself, to the front's end, or to before the first point from which V_tip stays below SLOW_SHARE c_L: is
-    nowhere defined and above that again. A slow stretch behind which the front is fast again is part of
-    it."""
-    v, slow = front.v_m_per_s, SLOW_SHARE * event.c_L
-    fast = np.flatnonzero(v >= slow)
-    behind = fast[-1] + 1 if fast.size else 0
-    slow_there = np.flatnonzero(v[behind:] < slow)  # an undefined speed decides nothing
-    end = behind + slow_there[0] if slow_there.size else len(v)
-    counted = np.flatnonzero(event.counts(front, NUCLEATION_REACH_M)[:end])
+    """From beyond the trigger zone and its margin, or NUCLEATION_M from where a front nucleated by itself, to
+    the front's slow_end."""
+    end = slow_end(front.v_m_per_s / event.c_L)
+    counted = np.flatnonzero(event.counts(front, NUCLEATION_M)[:end])
     return front.part(slice(counted[0] if counted.size else end, end))
 
 

@@ -862,7 +862,7 @@ def write(study: Study, batch: slipfront.Batch) -> list[dict[str, Any]]:
         return [outcome_json(study, o) for o in study.outcomes if o.sample.kind == kind]
 
     found = {
-        "version": slipfront._core.version(),
+        "version": slipfront.version(),
         "quick": study.quick,
         "n_runs": batch.n_runs,
         "n_quiet": batch.n_quiet,

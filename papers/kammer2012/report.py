@@ -20,16 +20,17 @@ from drawing.criteria import FIT_COLOUR
 from drawing.paper_style import EVENT_STYLES
 from drawing.results import Fit, Results, read_results
 from slipfront.folder import belongs
-from slipfront.read import Front, Run
+from slipfront.opened import OpenRun, drawn_history
+from slipfront.read import Front
 from slipfront.report import run as single
 from slipfront.report.command import main
+from slipfront.report.history import ThinHistory, thinned
 from slipfront.report.page import Page, section, warnings_list, words
 from slipfront.report.run_data import (
     MEASURES,
     FrontLook,
     constant_fields,
     has_snapshots,
-    history_of,
     run_data,
 )
 from slipfront.report.study import PERCENT, Study, percent
@@ -67,7 +68,7 @@ def label(name: str) -> str:
     return EVENT_STYLES[name].label.replace("$\\mu_k = 1.0$", "μ_k = 1.0")
 
 
-def look(run: Run, front: Front) -> FrontLook:
+def look(run: OpenRun, front: Front) -> FrontLook:
     """The event's colour; filled symbols are fronts against the imposed shear, open ones those along it."""
     against = front.direction < 0
     way = "to −x, against the shear" if against else "to +x, along the shear"
@@ -101,7 +102,7 @@ def runs_table(results: Results) -> str:
                 words(label(name)),
                 words(run.info.get("title", "")),
                 single.ending(run),
-                str(len(run.fronts)),
+                str(len(run.front_list)),
                 str(len(told) if isinstance(told, list) else 0),
                 f"<code>slipfront report {folder}</code>",
             ]
@@ -120,25 +121,26 @@ def figures(results: Results) -> list[str]:
         return [tables.figure_html(d, results, d.rendered("png")) for d in drawings]
 
 
-def runs_parts(results: Results) -> list[str]:
+def runs_parts(results: Results, histories: list[ThinHistory]) -> list[str]:
     """The diagrams of one run at a time."""
-    every = list(results.runs.values())
-    all_have_snapshots = all(has_snapshots(run) for run in every)
+    all_have_snapshots = all(has_snapshots(run) for run in results.runs.values())
     return [
         section("runs", "Runs", runs_table(results)),
         run_list(),
-        single.space_time_section(single.thinning(history_of(every[0])), constant_fields(every)),
-        single.profiles_section(history_of(every[0])),
+        single.space_time_section(single.thinning(histories[0]), constant_fields(histories)),
+        single.profiles_section(histories[0]),
         single.energy_section(),
         single.snapshots_section(all_have_snapshots),
     ]
 
 
 def reproduction(folder: Path, _file: Path) -> Page:
-    results = read_results(folder, read=lambda place: single.thin_run(place, (MOST_TIMES, MOST_NODES)))
-    runs = [run_data(run, look, label(name)) for name, run in results.runs.items()]
+    results = read_results(folder)
+    histories = [thinned(drawn_history(run), (MOST_TIMES, MOST_NODES)) for run in results.runs.values()]
+    pairs = zip(results.runs.items(), histories, strict=True)
+    runs = [run_data(run, history, look, label(name)) for (name, run), history in pairs]
     panels = [measure for measure in MEASURES if any(measure in run["panels"] for run in runs)]
-    constant = constant_fields(list(results.runs.values()))
+    constant = constant_fields(histories)
     scorecard = section(
         "scorecard",
         "Scorecard",
@@ -155,7 +157,7 @@ def reproduction(folder: Path, _file: Path) -> Page:
             section("figures", "Figures", *figures(results)),
             scorecard,
             single.criteria_section(panels, more="Fronts of all four runs; a click on a name hides them."),
-            *runs_parts(results),
+            *runs_parts(results, histories),
             section(
                 "fit", "Fit of the energy criterion", tables.fit_table(results), tables.spread_table(results)
             ),

@@ -2,7 +2,7 @@
 """Slip fronts at frictional interfaces: cases run or composed, results opened, a user's own data measured.
 docs/python.md
 
-Nothing is imported before it is used: figures and readers need neither xarray nor the compiled module."""
+Nothing is imported before it is used: figures and readers do not need the compiled module."""
 
 from difflib import get_close_matches
 from importlib import import_module
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from slipfront._core import Stepper as Stepper
     from slipfront._core import WaveSpeeds as WaveSpeeds
     from slipfront._core import WellPosedness as WellPosedness
+    from slipfront._core import version as version
     from slipfront.batch import Batch as Batch
+    from slipfront.batch import event_of_history as event_of_history
     from slipfront.contour import ContourIntegral as ContourIntegral
     from slipfront.contour import contour_integral as contour_integral
     from slipfront.errors import BlowUpError as BlowUpError
@@ -37,9 +39,6 @@ if TYPE_CHECKING:
     from slipfront.gauges import compare_gauges as compare_gauges
     from slipfront.gauges import gauges_of as gauges_of
     from slipfront.gauges import read_gauges as read_gauges
-    from slipfront.material import stable_step_s as stable_step_s
-    from slipfront.material import wave_speeds as wave_speeds
-    from slipfront.material import well_posedness as well_posedness
     from slipfront.measures import FrontSettings as FrontSettings
     from slipfront.measures import criteria as criteria
     from slipfront.measures import falls_while_rises as falls_while_rises
@@ -61,67 +60,38 @@ if TYPE_CHECKING:
     from slipfront.running import resume as resume
     from slipfront.running import run as run
     from slipfront.running import run_with_law as run_with_law
+    from slipfront.running import stable_step_s as stable_step_s
+    from slipfront.running import wave_speeds as wave_speeds
+    from slipfront.running import well_posedness as well_posedness
     from slipfront.tip_fit import TipFit as TipFit
     from slipfront.tip_fit import fit_tip as fit_tip
     from slipfront.tip_fit import fit_tips as fit_tips
     from slipfront.tip_fit import tip_field as tip_field
 
-# The module of each name.
-_PLACES = {
-    "BatchEvent": "_core",
-    "Body": "_core",
-    "ExponentialFit": "_core",
-    "Info": "_core",
-    "Interface": "_core",
-    "InterfaceState": "_core",
-    "Mesh": "_core",
-    "Rupture": "_core",
-    "Stepper": "_core",
-    "WaveSpeeds": "_core",
-    "WellPosedness": "_core",
-    "Batch": "batch",
-    "ContourIntegral": "contour",
-    "contour_integral": "contour",
-    "BlowUpError": "errors",
-    "CaseError": "errors",
-    "Error": "errors",
-    "WriteError": "errors",
-    "DataError": "files",
-    "Gauge": "gauges",
-    "compare_gauges": "gauges",
-    "gauges_of": "gauges",
-    "read_gauges": "gauges",
-    "stable_step_s": "material",
-    "wave_speeds": "material",
-    "well_posedness": "material",
-    "fracture_of_history": "fracture",
-    "predict_fronts": "fracture",
-    "FrontSettings": "measures",
-    "criteria": "measures",
-    "falls_while_rises": "measures",
-    "find_fronts": "measures",
-    "find_fronts_in_history": "measures",
-    "fit_exponential": "measures",
-    "rank_correlation": "measures",
-    "ratio_at_equal_x": "measures",
-    "spread_at_equal_x": "measures",
-    "read_onsets": "onsets",
-    "OpenRun": "opened",
-    "OpenSequence": "opened_sequence",
-    "open": "opened_sequence",
-    "read_seissol_fault_receivers": "other_codes",
-    "read_sem2dpack": "other_codes",
-    "read_uguca": "other_codes",
-    "case": "running",
-    "info": "running",
-    "resume": "running",
-    "run": "running",
-    "run_with_law": "running",
-    "TipFit": "tip_fit",
-    "fit_tip": "tip_fit",
-    "fit_tips": "tip_fit",
-    "tip_field": "tip_fit",
+# The names of each module.
+_NAMES = {
+    "_core": (
+        "BatchEvent Body ExponentialFit Info Interface InterfaceState Mesh Rupture Stepper WaveSpeeds "
+        "WellPosedness version"
+    ),
+    "batch": "Batch event_of_history",
+    "contour": "ContourIntegral contour_integral",
+    "errors": "BlowUpError CaseError Error WriteError",
+    "files": "DataError",
+    "fracture": "fracture_of_history predict_fronts",
+    "gauges": "Gauge compare_gauges gauges_of read_gauges",
+    "measures": (
+        "FrontSettings criteria falls_while_rises find_fronts find_fronts_in_history fit_exponential "
+        "rank_correlation ratio_at_equal_x spread_at_equal_x"
+    ),
+    "onsets": "read_onsets",
+    "opened": "OpenRun",
+    "opened_sequence": "OpenSequence open",
+    "other_codes": "read_seissol_fault_receivers read_sem2dpack read_uguca",
+    "running": "case info resume run run_with_law stable_step_s wave_speeds well_posedness",
+    "tip_fit": "TipFit fit_tip fit_tips tip_field",
 }
+_PLACES = {name: module for module, names in _NAMES.items() for name in names.split()}
 
 __all__ = tuple(_PLACES)
 

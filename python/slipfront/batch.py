@@ -3,15 +3,39 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from slipfront import _core
 from slipfront.errors import CaseError
-from slipfront.given import flag, in_order, instance, kept_path, text
-from slipfront.opened_sequence import OpenSequence, opened
-from slipfront.running import CHECKPOINT_EVERY_S, MOST_THREADS, threads_of
+from slipfront.given import flag, in_order, instance, kept_path, number, refusing, text
+from slipfront.measures import Arrays, history_arrays, tractions_before
+from slipfront.opened_sequence import OpenSequence, open_sequence
+from slipfront.running import CHECKPOINT_EVERY_S, MOST_THREADS, CaseLike, make_case, threads_of
+
+
+def event_of_history(
+    case: CaseLike | _core.Case,
+    history: Arrays,
+    tractions: Arrays | None = None,
+    *,
+    threshold_m_per_s: float = 1e-3,
+    critical_shear_m: float = math.nan,
+) -> _core.BatchEvent:
+    """Fronts and onsets of any history, as of a batch's event.
+
+    case: material, friction, event.kind with its trigger zone, and how fronts are measured. history,
+    tractions, threshold_m_per_s: as for find_fronts_in_history. Contact is where p_s is above 0, its inside
+    loading.edge_margin_m from the ends. Raises CaseError."""
+    threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
+    shear_m = number(critical_shear_m, "critical_shear_m")
+    prepared = case if isinstance(case, _core.Case) else make_case(case, None, {})
+    arrays = history_arrays(history)
+    before = tractions_before(arrays, tractions)
+    with refusing():
+        return _core.event_of_history(prepared, *arrays, *before, threshold, shear_m)
 
 
 class Batch:
@@ -92,6 +116,4 @@ class Batch:
         """Runs a sequence of events into a folder in `folder`. It has all threads."""
         to, every_s = self.folder / name, CHECKPOINT_EVERY_S
         case.run(to, True, self._threads, every_s, None, [], within=self._folder)
-        found = opened(to)
-        assert isinstance(found, OpenSequence)
-        return found
+        return open_sequence(to)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import errno
 import os
+import re
 import stat
 import sys
 import warnings
@@ -17,7 +18,19 @@ from typing import Any, NoReturn, TextIO
 
 from slipfront.files import DataError, NoRoom, one_line, open_file
 
+#: Arguments of a material, by the keys of a case.
+MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 DONE, NOT_WRITTEN, REFUSED, INTERRUPTED = 0, 1, 2, 130
+
+
+def option(name: str) -> str:
+    """Of the command line, by its name in Python."""
+    return f"--{name.lower().replace('_', '-')}"
+
+
+def in_options(text: str, names: tuple[str, ...]) -> str:
+    """A message about arguments of a function, as one about options."""
+    return re.sub(rf"\b({'|'.join(names)})\b", lambda found: option(found[0]), text)
 
 
 def write_line(stream: TextIO | None, text: str) -> None:
@@ -127,6 +140,13 @@ def require_own(file: Path, mark: bytes, what: str) -> None:
             beginning = stream.read(len(mark))
         if beginning != mark:
             raise DataError(f"{file}: is there and not {what}: not replaced; give another name with -o")
+
+
+def write_own(file: Path, mark: str, text: str, what: str) -> None:
+    """A file that begins with a mark, in place of one of ours alone."""
+    require_own(file, mark.encode(), what)
+    with publishing_into(file.parent) as made:
+        (made / file.name).write_text(mark + text, encoding="utf-8")
 
 
 @contextmanager

@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.integrate import trapezoid
 
 from slipfront.files import DataError
 from slipfront.given import instance, number, whole
 from slipfront.opened import OpenRun
-from slipfront.read import read_fronts, require
+from slipfront.read import require
 
 ZONES = 5  # half the default box's width over the length in which friction weakens
 SPEED_ZONES = 2  # to each side of the tip, over which its speed is taken
@@ -21,13 +22,8 @@ PLATEAU = 0.5  # share of the box, from its middle, in which the weight is 1
 OVER = 0.01  # share of the fall of traction, or of slip, that counts as none
 GAUSS = tuple((a, b) for a in (-(3**-0.5), 3**-0.5) for b in (-(3**-0.5), 3**-0.5))
 BREAKDOWN = (
-    "x_m",
-    "breakdown_complete",
-    "residual_coefficient",
-    "peak_t_Pa",
-    "residual_t_Pa",
-    "cohesive_zone_m",
-)
+    "x_m", "breakdown_complete", "residual_coefficient", "peak_t_Pa", "residual_t_Pa", "cohesive_zone_m",
+)  # fmt: skip
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
 
 
@@ -223,7 +219,7 @@ class Tip:
 
 
 def tip_of(run: OpenRun, front: int, time_s: float) -> Tip:
-    fronts = {found.id: found for found in read_fronts(run.folder / "fronts.csv")}
+    fronts = {found.id: found for found in run.front_list}
     require(front in fronts, run.folder / "fronts.csv", f"no front {front}")
     path = fronts[front]
     x_tip = path.tip_m(time_s)
@@ -406,7 +402,6 @@ def works_on_the_interface(
     before = before + case.get("prestress", {}).get("t_rate_Pa_per_s", 0.0) * time
 
     def work(stress_Pa: np.ndarray) -> float:
-        density = box.weight(x, 0.0) * stress_Pa
-        return -float(np.sum(0.5 * (density[1:] + density[:-1]) * np.diff(slip)))
+        return -float(trapezoid(box.weight(x, 0.0) * stress_Pa, slip))
 
     return work(before - residual), work(t - residual), zone

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from scipy.integrate import trapezoid
 
 import slipfront.printed  # noqa: F401
 from slipfront import _core
@@ -16,9 +17,8 @@ from slipfront.errors import CaseError
 from slipfront.given import array, column, number, refusing
 from slipfront.measures import Arrays, field_of, history_arrays
 from slipfront.opened import OpenRun
-from slipfront.ranges import RANGES, beyond
 from slipfront.running import CaseLike, make_case
-from slipfront.units import attributes
+from slipfront.units import RANGES, beyond, variables
 
 #: At places x_m, or one value for all.
 AlongX = float | tuple[ArrayLike, ArrayLike]
@@ -128,16 +128,13 @@ def predict_fronts(
     at = None if at_x_m is None else number(at_x_m, "at_x_m", finite=True)
     prepared = make_case(case, changes, tables)
     found = _core.predict_fronts(prepared, places, at_places(energies), at_places(residuals), at, before)
-    points = {
-        name: xr.Variable(("point",), values, attributes(name))
-        for name, values in found.pop("points").items()
-    }
+    points = xr.Dataset(variables(("point",), found.pop("points"))).set_coords("x_m")
     points["direction"] = points["direction"].astype(np.int64)
     if not found.pop("law_has_length") and energy_is_of_run:
         notes.append("the friction law has no length: its fracture energy is that of the run's mesh")
     found["notes"] += notes
     found["starts"] = int(found["starts"])  # netCDF has no truth values
-    return xr.Dataset({k: v for k, v in points.items() if k != "x_m"}, {"x_m": points["x_m"]}, found)
+    return points.assign_attrs(found)
 
 
 def case_of_bodies(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
@@ -201,9 +198,8 @@ def fracture_of_history(
         "front_id": points["front_id"].astype(np.int64), "x_m": points["x_m"], "onset_s": points["onset_s"],
         "direction": points["direction_of_point"], "v_tip_m_per_s": points["v_tip_m_per_s"], **found,
     }  # fmt: skip
-    made = {name: xr.Variable(("point",), values, attributes(name)) for name, values in columns.items()}
-    coordinates = {name: made.pop(name) for name in ("front_id", "x_m", "onset_s")}
-    return xr.Dataset(made, coordinates, {"notes": notes})
+    made = xr.Dataset(variables(("point",), columns), attrs={"notes": notes})
+    return made.set_coords(["front_id", "x_m", "onset_s"])
 
 
 def nodes_of(points: Mapping[str, np.ndarray], x_m: np.ndarray) -> np.ndarray:
@@ -230,7 +226,7 @@ def nodes_of(points: Mapping[str, np.ndarray], x_m: np.ndarray) -> np.ndarray:
 
 def notes_on_slip(time_s: np.ndarray, slip_m: np.ndarray, rate: np.ndarray) -> list[str]:
     """Where slip and slip rate disagree; refuses those of different units."""
-    by_rate = np.abs((0.5 * (rate[1:] + rate[:-1]) * np.diff(time_s)[:, None]).sum(axis=0)).sum()
+    by_rate = np.abs(trapezoid(rate, time_s, axis=0)).sum()
     own = np.abs(slip_m[-1] - slip_m[0]).sum()
     more = float(max(own, by_rate) / max(min(own, by_rate), 1e-300))
     told = (

@@ -4,19 +4,18 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
-import re
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from slipfront import command
+from slipfront.command import MATERIAL, option
 from slipfront.files import DataError
-from slipfront.material import wave_speeds
 from slipfront.measures import LENGTHS_AND_TIMES, FrontSettings, find_fronts, slices_of
 from slipfront.onsets import NONE, read_onsets
+from slipfront.running import wave_speeds
 
 COLUMNS = ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s")
 SPEEDS = ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s")  # of the whole front
@@ -24,7 +23,6 @@ TRACTIONS = ("t_s_Pa", "p_s_Pa")
 OPTIONS = (*LENGTHS_AND_TIMES, "never_slipped", "place_error_m", "time_error_s")  # by their names in Python
 SLOW = 1e-3  # of a wave speed: ruptures run at 0.01 and more of it; fronts below it creep
 MARK = "# fronts by slipfront fronts\n"  # by it a file is known that may be replaced
-MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -56,7 +54,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     speeds = parser.add_argument_group("wave speed, for V_tip/c_L: given, or of a material").add_argument
     speeds("--c-l-m-per-s", type=float, help="longitudinal wave speed")
     for name in MATERIAL:
-        speeds(f"--{name.lower().replace('_', '-')}", dest=name, type=float)
+        speeds(option(name), dest=name, type=float)
     speeds("--plane", choices=("stress", "strain"), help="of the material; by default stress")
     return parser.parse_args(arguments)
 
@@ -74,7 +72,7 @@ def wave_speeds_of(options: argparse.Namespace) -> dict[str, float]:
         if options.plane is not None:
             raise DataError("--plane counts with a material alone; give one, or leave it out")
         return {}
-    missing = [f"--{name.lower().replace('_', '-')}" for name in MATERIAL if name not in given]
+    missing = [option(name) for name in MATERIAL if name not in given]
     if missing:
         raise DataError(f"a material needs {', '.join(missing)} as well")
     try:
@@ -130,17 +128,12 @@ def rows(fronts: xr.Dataset, c_L_m_per_s: float | None) -> str:
         columns["static_ratio"] = (fronts["t_s_Pa"] / fronts["p_s_Pa"]).to_numpy()
     if np.isfinite(columns["static_ratio"]).any():
         names.append("static_ratio")
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(names)
-    for row in zip(*(columns[name].tolist() for name in names), strict=True):
-        writer.writerow("" if value != value else repr(value) for value in row)
-    return text.getvalue()
+    return pd.DataFrame(columns)[names].to_csv(index=False, lineterminator="\n")
 
 
 def in_words(text: str) -> str:
     """Options by their names on the command line."""
-    return re.sub("|".join(OPTIONS), lambda found: f"--{found[0].replace('_', '-')}", text)
+    return command.in_options(text, OPTIONS)
 
 
 def speed_in_words(speed_and_interval: np.ndarray, of_waves: dict[str, float]) -> str:
@@ -199,13 +192,8 @@ def main(arguments: list[str]) -> int:
         of_waves = wave_speeds_of(options)
         fronts = find(options.onsets, options)
         if options.output is not None:
-            write(options.output, rows(fronts, of_waves.get("c_L")))
+            table = rows(fronts, of_waves.get("c_L"))
+            command.write_own(options.output, MARK, table, "a table of slipfront fronts")
         return summary(fronts, of_waves)
 
     return command.run("slipfront fronts", work)
-
-
-def write(file: Path, text: str) -> None:
-    command.require_own(file, MARK.encode(), "a table of slipfront fronts")
-    with command.publishing_into(file.parent) as made:
-        (made / file.name).write_text(MARK + text, encoding="utf-8")

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.optimize import minimize_scalar
 
 from slipfront.errors import CaseError
 from slipfront.files import DataError, one_line, read_table
@@ -416,7 +417,7 @@ class Beside:
 
 
 def best_shift(besides: list[Beside], within_s: float) -> float:
-    """That of the least mean square of all misfits, from even shifts, then by thirds."""
+    """That of the least mean square of all misfits, from even shifts, then between the neighbours."""
 
     def cost(shift_s: float) -> float:
         return float(np.mean([np.mean(b.misfit(shift_s) ** 2) for b in besides]))
@@ -427,11 +428,8 @@ def best_shift(besides: list[Beside], within_s: float) -> float:
     n = int(np.ceil(within_s / max(step, within_s / 500)))
     shifts = np.linspace(-within_s, within_s, 2 * n + 1)
     k = int(np.argmin([cost(s) for s in shifts]))
-    low, high = shifts[max(k - 1, 0)], shifts[min(k + 1, 2 * n)]
-    for _ in range(40):
-        a, b = low + (high - low) / 3, high - (high - low) / 3
-        low, high = (low, b) if cost(a) <= cost(b) else (a, high)
-    refined = 0.5 * (low + high)
+    ends = shifts[max(k - 1, 0)], shifts[min(k + 1, 2 * n)]
+    refined = minimize_scalar(cost, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x
     return float(min((shifts[k], refined), key=cost))
 
 

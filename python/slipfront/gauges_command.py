@@ -4,27 +4,24 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
-import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from slipfront import command
+from slipfront.command import MATERIAL, option
 from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
 from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, from_arms, gauges_of, read_gauges
-from slipfront.opened import OpenRun
-from slipfront.read import read_place
+from slipfront.opened import OpenRun, open_run
 from slipfront.tip_fit import TipFit, bodies_of, fit_tips, limiting_speed_m_per_s
 
 MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
-MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 OF_FIT = (
     "tip_s", "tip_error_s", "speed_m_per_s", "speed_error_m_per_s", "K_Pa_sqrt_m", "K_error_Pa_sqrt_m",
     "Gamma_J_per_m2", "Gamma_error_J_per_m2",
@@ -38,21 +35,9 @@ OPTIONS = (
 
 #: Those that count in a fit, and in a comparison, alone.
 OF_FITS = (
-    "speed_m_per_s",
-    "direction",
-    "r_min_m",
-    "r_max_m",
-    "no_step",
-    "passages",
-    *MATERIAL,
-    "plane",
-    "base",
-)
+    "speed_m_per_s", "direction", "r_min_m", "r_max_m", "no_step", "passages", *MATERIAL, "plane", "base",
+)  # fmt: skip
 OF_COMPARISONS = ("within_s",)
-
-
-def option(name: str) -> str:
-    return f"--{name.lower().replace('_', '-')}"
 
 
 def interval(text: str) -> tuple[float, float]:
@@ -171,15 +156,6 @@ def prepared(gauges: list[Gauge], options: argparse.Namespace) -> tuple[list[Gau
     return made, notes
 
 
-def as_csv(rows: list[dict[str, Any]]) -> str:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({name: "" if value != value else value for name, value in row.items()})
-    return text.getvalue()
-
-
 def in_components(of: dict[str, float]) -> dict[str, Any]:
     """Of components or of arms."""
     if not of or next(iter(of)) in COMPONENTS:
@@ -262,7 +238,7 @@ def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def work(options: argparse.Namespace) -> list[str]:
-    run = OpenRun(read_place(options.records)) if is_folder(options.records) else None
+    run = open_run(options.records) if is_folder(options.records) else None
     if run is None and options.stress:
         raise DataError("--stress is of a run; a record holds what its columns say: leave it out")
     with warnings.catch_warnings(record=True) as passed_over:
@@ -271,7 +247,7 @@ def work(options: argparse.Namespace) -> list[str]:
     gauges, notes = prepared(read, options)
     notes = [*(str(told.message) for told in passed_over), *notes]
     if options.compare is not None:
-        beside = OpenRun(read_place(options.compare))
+        beside = open_run(options.compare)
         found = compare_gauges(gauges, beside, within_s=options.within_s)
         lines, rows = lines_of_comparison(found), rows_of_comparison(found)
     else:
@@ -285,9 +261,8 @@ def work(options: argparse.Namespace) -> list[str]:
         is_strain = {gauge.name: gauge.is_strain for gauge in gauges}
         lines, rows = [line_of(fit) for fit in fits], [row_of(fit, is_strain[fit.gauge]) for fit in fits]
     if options.output is not None:
-        command.require_own(options.output, MARK.encode(), "a table of slipfront gauges")
-        with command.publishing_into(options.output.parent) as made:
-            (made / options.output.name).write_text(MARK + as_csv(rows), encoding="utf-8")
+        text = pd.DataFrame(rows).to_csv(index=False, lineterminator="\n")
+        command.write_own(options.output, MARK, text, "a table of slipfront gauges")
     if options.figure is not None and options.compare is None and not any(fit.has_tip for fit in fits):
         notes.append(f"{options.figure}: not drawn: no gauge has a fit")
     elif options.figure is not None:
@@ -305,7 +280,7 @@ def work(options: argparse.Namespace) -> list[str]:
 
 def in_words(text: str) -> str:
     """Options by their names on the command line."""
-    return re.sub(rf"\b({'|'.join(OPTIONS)})\b", lambda found: option(found[0]), text)
+    return command.in_options(text, OPTIONS)
 
 
 def main(arguments: list[str]) -> int:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from scipy.special import stdtrit
 
 import slipfront.printed  # noqa: F401
 from slipfront import _core
@@ -21,7 +22,7 @@ from slipfront.errors import CaseError
 from slipfront.given import array, column, in_order, instance, number, refusing, shown, whole
 from slipfront.onsets import NONE, without_marks
 from slipfront.read import FRONT_COLUMNS, ratio
-from slipfront.units import attributes, unit_of
+from slipfront.units import attributes, unit_of, variables
 
 # Arrays by their names, such as a Dataset of OpenRun.
 Arrays = Mapping[Any, Any]
@@ -31,8 +32,6 @@ DIGITS = 7  # of times at most, behind which rounding begins
 WAITS = 5  # of a tip, in times that a front of the record takes for its least length
 NORMAL_95 = 1.96  # standard errors to each side that hold 95 %
 UNEVEN = 10  # speeds within a front that differ as many times are those of no line
-# Student's t for 95 %, in standard errors to each side, of 1, 2, ... degrees of freedom; the last for more.
-STUDENT_T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
 POINT_COLUMNS = (*(name for name in FRONT_COLUMNS if name not in ("front_id", "direction")), "slipping_share")
 
@@ -106,13 +105,8 @@ def as_dataset(fronts: list[_core.Front]) -> xr.Dataset:
         "end": np.array([front.end for front in fronts], dtype=np.str_),
         "mode": np.array([front.mode for front in fronts], dtype=np.str_),
     }
-    points = {
-        name: xr.Variable((dim,), values, attributes(name))
-        for dim, columns in (("point", of_points), ("front", of_fronts))
-        for name, values in columns.items()
-    }
-    coordinates = {name: points.pop(name) for name in ("x_m", "onset_s", "front_id", "front")}
-    return xr.Dataset(points, coordinates)
+    found = xr.Dataset(variables(("point",), of_points) | variables(("front",), of_fronts))
+    return found.set_coords(["x_m", "onset_s", "front_id"])
 
 
 def options_of(settings: FrontSettings | None) -> _core.FrontOptions:
@@ -193,7 +187,7 @@ def fitted_speed(
     half = float(np.abs(weight).sum()) * step_s / 2
     if (freedom := len(x) - 2) > 0:
         error = float(np.sqrt(scatter @ scatter / freedom / (x @ x)))
-        half = max(half, STUDENT_T[min(freedom, len(STUDENT_T)) - 1] * error)
+        half = max(half, float(stdtrit(freedom, 0.975)) * error)
     if errors is not None:
         half = max(half, NORMAL_95 * float(np.hypot(errors[1], slope * errors[0]) / np.sqrt(x @ x)))
     if half == 0 and freedom == 0:  # nothing tells how wrong two times are
@@ -380,8 +374,14 @@ def history_arrays(history: Arrays) -> HistoryArrays:
     return time_s, x_m, rate, t, p
 
 
-def tractions_at(x_m: np.ndarray, tractions: Arrays) -> tuple[np.ndarray, np.ndarray]:
-    """t_s_Pa and p_s_Pa; refused where they have places of their own that are not those of the history."""
+def tractions_before(arrays: HistoryArrays, tractions: Arrays | None) -> tuple[np.ndarray, np.ndarray]:
+    """t_s_Pa and p_s_Pa, by default those of the first time; refused where they have places of their own that
+    are not those of the history."""
+    _, x_m, _, t, p = arrays
+    if tractions is None:
+        if not (len(t) and len(p)):
+            raise CaseError("history holds no times")
+        return t[0], p[0]
     t_s, p_s = (column(tractions, "tractions", name) for name in ("t_s_Pa", "p_s_Pa"))
     if isinstance(tractions, Mapping) and "x_m" in tractions:
         own_m = column(tractions, "tractions", "x_m")
@@ -414,12 +414,7 @@ def find_fronts_in_history(
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
     if tip not in ("slip_rate", "peak"):
         raise CaseError(f"tip is {tip!r}; it must be 'slip_rate' or 'peak'")
-    if tractions is not None:
-        t_s, p_s = tractions_at(arrays[1], tractions)
-    elif len(arrays[3]) and len(arrays[4]):
-        t_s, p_s = arrays[3][0], arrays[4][0]
-    else:
-        raise CaseError("history holds no times")
+    t_s, p_s = tractions_before(arrays, tractions)
     options = options_of(settings)
     with refusing():
         found = _core.find_fronts_in_history(*arrays, t_s, p_s, threshold, tip == "peak", options)
@@ -442,9 +437,10 @@ def criteria(fronts: Arrays) -> xr.Dataset:
         "dynamic_ratio": ratio(c["t_d_Pa"], c["p_d_Pa"]),
         "energy_rise": ratio(c["U_r_J_per_m3"] - c["U_s_J_per_m3"], c["U_s_J_per_m3"]),
     }
-    values = {name: xr.Variable(("point",), each, attributes(name)) for name, each in found.items()}
     coordinates = fronts.coords if isinstance(fronts, xr.Dataset) else {}
-    return xr.Dataset(values, {k: v for k, v in coordinates.items() if v.dims == ("point",)})
+    return xr.Dataset(
+        variables(("point",), found), {k: v for k, v in coordinates.items() if v.dims == ("point",)}
+    )
 
 
 def energy_density_J_per_m3(

@@ -157,12 +157,8 @@ def csv_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray
 
 
 def mat_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray]]:
-    try:
-        from scipy.io import loadmat
-    except ImportError:
-        raise DataError(
-            f"{file}: a .mat file needs scipy: pip install scipy; or write the record as CSV"
-        ) from None
+    from scipy.io import loadmat
+
     with open_file(file) as stream:
         try:
             held = loadmat(stream)

@@ -18,23 +18,33 @@ import xarray as xr
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from slipfront.files import DataError, Table, dataset, open_hdf5, read_table, read_toml
+from slipfront.files import DataError, Table, dataset, is_number, number, open_hdf5, read_table, read_toml
 from slipfront.folder import belongs, result_file
 from slipfront.read import (
     BLEW_UP,
     HISTORY_FIELDS,
+    PROBE_FIELDS,
+    STATUSES,
+    Balance,
+    Fields,
+    Front,
     Place,
+    entry,
     is_open,
     n_finite,
     open_history,
+    ratio,
+    read_balance,
     read_fields,
+    read_fracture,
     read_fronts,
-    read_probes,
+    read_place,
     read_static,
     require,
     require_ascending,
+    require_same_nodes,
 )
-from slipfront.units import attributes
+from slipfront.units import attributes, variables
 
 STRESSES = ("stress_xx_Pa", "stress_yy_Pa", "stress_zz_Pa", "stress_xy_Pa")
 CHANGE = ", change since the start"
@@ -99,7 +109,7 @@ def attributes_of(found: h5py.Dataset, name: str) -> dict[str, str]:
 
 def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr.Variable]:
     """The columns of a table: numbers, or texts where a column holds any."""
-    variables = {}
+    columns = {}
     for name in table.header:
         try:
             values: Any = table.numbers(name, finite)
@@ -107,8 +117,8 @@ def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr
             if not any(cell and cell[0].isalpha() for cell in table.texts(name)):
                 raise
             values = np.array(table.texts(name), dtype=np.str_)
-        variables[name] = xr.Variable((dim,), values, attributes(name))
-    return variables
+        columns[name] = xr.Variable((dim,), values, attributes(name))
+    return columns
 
 
 def read_case(folder: Path) -> dict[str, Any]:
@@ -120,8 +130,9 @@ def read_case(folder: Path) -> dict[str, Any]:
     return case
 
 
-def stored_history(file: Path, kept: Any, attrs: dict[str, str]) -> xr.Dataset:
-    """A finished interface.h5, whose fields stay there until they are asked for."""
+def stored_history(file: Path, kept: Any, attrs: dict[str, str], finite: bool = True) -> xr.Dataset:
+    """A finished interface.h5, whose fields stay there until they are asked for; then they are refused where
+    they are to be finite and are not."""
     with open_hdf5(file) as hdf5:
         coordinates = {
             name: xr.Variable((name,), dataset(hdf5, name, 1)[()], attributes_of(hdf5[name], name))
@@ -130,10 +141,19 @@ def stored_history(file: Path, kept: Any, attrs: dict[str, str]) -> xr.Dataset:
         for name, values in coordinates.items():
             require_ascending(file, name, values.to_numpy())
         shape = len(coordinates["time_s"]), len(coordinates["x_m"])
+        for name in HISTORY_FIELDS:
+            found = dataset(hdf5, name, 2).shape
+            require(found == shape, file, f"{name} is {found}, not {shape}")
 
         def field(name: str) -> xr.Variable:
+            def read(stored_in: h5py.File, key: Any) -> np.ndarray:
+                values = stored_in[name][key]
+                if finite and name in HISTORY_FIELDS:
+                    require(np.isfinite(values), file, f"a value of {name} is not finite")
+                return values
+
             found = dataset(hdf5, name, 2)
-            array = StoredArray(file, found.shape, found.dtype, lambda h, key: h[name][key], kept)
+            array = StoredArray(file, found.shape, found.dtype, read, kept)
             return stored(("time_s", "x_m"), array, attributes_of(found, name))
 
         fields = {
@@ -141,48 +161,141 @@ def stored_history(file: Path, kept: Any, attrs: dict[str, str]) -> xr.Dataset:
             for name, found in hdf5.items()
             if isinstance(found, h5py.Dataset) and found.shape == shape
         }
-    require(all(name in fields for name in HISTORY_FIELDS), file, f"not all of its fields are {shape}")
     return xr.Dataset(fields, coordinates, attrs)
 
 
-class OpenRun:
-    """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
-    what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
-    run."""
+class Opened:
+    """What OpenRun and OpenSequence have in common."""
 
     def __init__(self, place: Place, kept: Kept | None = None) -> None:
-        self._place = place
+        self.place = place
         self._kept = kept
 
-    def __repr__(self) -> str:
-        title = self.case.get("title") or self._place.name
-        return f"<slipfront run '{title}', {self.status}: {self.folder}>"
+    @property
+    def name(self) -> str:
+        """That of its folder."""
+        return self.place.name
 
     @property
     def folder(self) -> Path:
-        """Where the files are: the run's folder, or its unfinished/."""
-        return self._place.folder
+        """Where the files are: its folder, or unfinished/ in it."""
+        return self.place.folder
 
     @property
     def info(self) -> dict[str, Any]:
-        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings."""
-        return deepcopy(self._place.info)  # what others read stays as the file has it
+        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings; or sequence.json:
+        version, end, wave speeds, number of events, largest friction, last state, imbalance of energy."""
+        return deepcopy(self.place.info)  # what others read stays as the file has it
 
     @property
     def status(self) -> str:
-        """How the run ended: complete, interrupted, blew_up, failed, or running."""
-        return self._place.status
+        """How it ended: complete, interrupted, blew_up, failed, or running."""
+        return self.place.status
+
+    @cached_property
+    def _case(self) -> dict[str, Any]:
+        return read_case(self.folder)
 
     @property
     def case(self) -> dict[str, Any]:
         """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
-        are the copies of the run, by their whole paths."""
-        return read_case(self.folder)
+        are copies in the folder, by their whole paths."""
+        return deepcopy(self._case)
+
+    def entry(self, table: str, key: str) -> Any:
+        """A key of a table of the case; None where it has none."""
+        return entry(self._case, table, key)
+
+    @property
+    def title(self) -> str:
+        """That of the case; may be empty."""
+        return str(self._case.get("title", ""))
+
+    def _attributes(self) -> dict[str, str]:
+        return {"title": self.title, "status": self.status, "folder": str(self.folder)}
+
+
+class OpenRun(Opened):
+    """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
+    what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
+    run."""
+
+    def __repr__(self) -> str:
+        return f"<slipfront run '{self.title or self.name}', {self.status}: {self.folder}>"
+
+    def checked(self) -> OpenRun:
+        """The same; all its files but the probes are compared with their checksums now, and read but for
+        history and fields."""
+        for name in ("case", "tractions", "front_list", "history", "fields", "balance"):
+            getattr(self, name)
+        return self
+
+    @property
+    def mark(self) -> str:
+        """For titles: how a run ended that did not come to its end; empty for a complete one."""
+        return self.place.mark(self._last_s)
+
+    @property
+    def _last_s(self) -> float:
+        """Of the history of a run that did not come to its end; any number of a complete one."""
+        return 0.0 if STATUSES[self.status] is None else float(drawn_history(self)["time_s"][-1])
+
+    @property
+    def remarks(self) -> list[str]:
+        """Lines to print beside figures."""
+        lines = self.place.remarks(self._last_s)
+        if any((front.speed_kind == "").any() for front in self.front_list):
+            lines.append(
+                f"{self.folder / 'fronts.csv'}: of a program that did not tell nodes released by the "
+                "trigger or at once from a front: the fastest speeds may be of such"
+            )
+        return lines
+
+    def parameter(self, key: str) -> float:
+        """Number of a dotted key of the case."""
+        return number(self.folder / "case.resolved.toml", self._case, key)
+
+    def fact(self, key: str) -> float:
+        """Number of a dotted key of run.json."""
+        return number(self.folder / "run.json", self.place.info, key)
+
+    @property
+    def c_L_m_per_s(self) -> float:
+        """Longitudinal wave speed of the plate."""
+        return self.fact("wave_speeds.c_L_m_per_s")
+
+    @property
+    def kind(self) -> str:
+        """What starts the event: left, right, spontaneous, ..."""
+        return str(self.entry("event", "kind"))
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether the tractions before the event were given, not found by tilting and shearing the plate."""
+        return bool(self.entry("loading", "method") == "prestress")
+
+    @property
+    def prestress(self) -> dict[str, float] | None:
+        """The state before the event that prescribed tractions leave out of displacements, Pa by the names of
+        the records; NaN where they determine none. None without prescribed tractions."""
+        if not self.prescribed:
+            return None
+        told = self.place.info.get("prestress")  # there was none in older files
+        found = told if isinstance(told, dict) else {}
+        before: dict[str, Any] = {n: found.get(n) for n in PROBE_FIELDS if n.startswith("stress")}
+        if self.entry("material", "plane") == "stress":
+            before["stress_zz_Pa"] = 0.0
+        return {name: float(value) if is_number(value) else np.nan for name, value in before.items()}
+
+    @property
+    def records_prestress(self) -> bool:
+        """Whether recorded strain and stress hold it; else they are the change from it, as in older files."""
+        return entry(self.place.info, "prestress", "recorded") is True
 
     @property
     def is_of_sequence(self) -> bool:
         """Whether the run is an event of a sequence: its case alone does not lead to it."""
-        return bool(self.case.get("sequence", {}).get("max_events", 1) > 1)
+        return bool((self.entry("sequence", "max_events") or 1) > 1)
 
     @cached_property
     def tractions(self) -> xr.Dataset:
@@ -191,15 +304,31 @@ class OpenRun:
         read_static(file)  # for its checks
         return self._from_table(file, "x_m")
 
+    @property
+    def x_m(self) -> np.ndarray:
+        """Places of the nodes. [nodes]"""
+        return self.tractions["x_m"].to_numpy()
+
+    @property
+    def static_ratio(self) -> np.ndarray:
+        """t_s/p_s; NaN where p_s is 0. [nodes]"""
+        return ratio(self.tractions["t_s_Pa"].to_numpy(), self.tractions["p_s_Pa"].to_numpy())
+
     @cached_property
     def history(self) -> xr.Dataset:
         """interface.h5: slip_m, slip_rate_m_per_s, t_Pa, p_Pa and the states of the friction law over time_s
         and x_m. The slip rate belongs to half a (sub-)step later than the time. Of a run that is not over:
         what there is of it."""
-        file = result_file(self.folder / "interface.h5")
+        file, blew_up = result_file(self.folder / "interface.h5"), self.status == BLEW_UP
         if is_open(file):
-            return self._open_history(file)
-        return stored_history(file, self._kept, self._attributes())
+            found = self._open_history(file)
+        else:
+            found = stored_history(file, self._kept, self._attributes(), finite=not blew_up)
+            require_same_nodes(file, found["x_m"].to_numpy(), self.x_m)
+        if blew_up:  # as far as it is finite
+            columns = (found[name].to_numpy() for name in ("time_s", *found))
+            found = found.isel(time_s=slice(n_finite(*columns)))
+        return found
 
     @property
     def interface(self) -> xr.Dataset:
@@ -207,27 +336,32 @@ class OpenRun:
         return self.history
 
     @cached_property
+    def front_list(self) -> list[Front]:
+        """fronts.csv, a Front each."""
+        file, growing = self.folder / "fronts.csv", self.place.growing
+        return [] if growing and not belongs(file) else read_fronts(file, growing)
+
+    def told(self, front: Front, name: str) -> str | None:
+        """What run.json says of a front in a word: how it ends, its mode; None where it says nothing."""
+        known = (f.get(name) for f in self.place.info.get("fronts", []) if f.get("id") == front.id)
+        return next(known, None)
+
+    @cached_property
     def fronts(self) -> xr.Dataset:
         """fronts.csv over `point`, a front's points in the order of travel: front_id, x_m, onset_s,
         v_tip_m_per_s, tractions (_s before the event, _d at l* ahead of the tip, _r at the onset), energy
         densities U. Over `front`: direction, end and mode of each, by its id."""
         file = self.folder / "fronts.csv"
-        if self._place.growing and not belongs(file):
+        if not self.front_list and not belongs(file):
             return xr.Dataset(attrs=self._attributes())
-        read_fronts(file, self._place.growing)  # for its checks
-        table = read_table(result_file(file), growing=self._place.growing)
-        points = table_variables(table, "point")
-        points["front_id"] = points["front_id"].astype(np.int64)
+        found = self._of_points(file).rename(direction="direction_of_point")
         whole = self.info.get("fronts", [])
         told = [f.get(name) for f in whole for name in ("id", "direction", "end", "mode")]
         plain = all(cell is None or isinstance(cell, int | str) for cell in told)
         require(plain, self.folder / "run.json", "an entry of 'fronts' is neither a number nor a text")
-        coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
-        coordinates["front"] = xr.Variable(("front",), [f.get("id") for f in whole], attributes("front"))
-        points["direction_of_point"] = points.pop("direction")
-        for name in ("direction", "end", "mode"):
-            points[name] = xr.Variable(("front",), [f.get(name) for f in whole], attributes(name))
-        return xr.Dataset(points, coordinates, self._attributes())
+        names = {"front": "id", "direction": "direction", "end": "end", "mode": "mode"}
+        of_fronts = {name: [f.get(key) for f in whole] for name, key in names.items()}
+        return found.assign(variables(("front",), of_fronts))
 
     @cached_property
     def fracture(self) -> xr.Dataset:
@@ -238,11 +372,15 @@ class OpenRun:
         file = self.folder / "fracture.csv"
         if not belongs(file):
             return xr.Dataset(attrs=self._attributes())
-        table = read_table(result_file(file), growing=self._place.growing)
-        points = table_variables(table, "point")
-        points["front_id"] = points["front_id"].astype(np.int64)
-        coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
-        return xr.Dataset(points, coordinates, self._attributes())
+        return self._of_points(file)
+
+    @cached_property
+    def breakdown(self) -> dict[int, dict[str, np.ndarray]] | None:
+        """FRACTURE_COLUMNS at the points of each front, by its id; NaN where the breakdown did not come to an
+        end. None of a run whose tables may end anywhere, or by an earlier version."""
+        if self.place.growing:
+            return None
+        return read_fracture(self.folder / "fracture.csv", self.front_list, self.status == BLEW_UP)
 
     @cached_property
     def energies(self) -> xr.Dataset:
@@ -256,29 +394,37 @@ class OpenRun:
         return energies
 
     @cached_property
+    def balance(self) -> Balance:
+        """The same by the names of the terms, as changes since the start."""
+        return read_balance(self.folder / "energy.csv", self.place.growing, self.status == BLEW_UP)
+
+    @cached_property
+    def fields(self) -> Fields | None:
+        """Mesh and times of the snapshots, whose speeds are read step by step. None of a run without any."""
+        file = self.folder / "fields.vtkhdf"
+        return read_fields(file) if belongs(file) and not is_open(result_file(file)) else None
+
+    @cached_property
     def snapshots(self) -> xr.Dataset | None:
         """fields.vtkhdf over time_s, node and component (x, y): displacement_m, velocity_m_per_s; over time_s
         and cell strain and stress (see absolute_stress), where the case has output.snapshot_stress; x_m and
         y_m of the nodes, and cell_nodes, four of each cell counterclockwise. None of a run without
         snapshots."""
-        file = self.folder / "fields.vtkhdf"
-        if not belongs(file) or is_open(result_file(file)):
+        mesh = self.fields
+        if mesh is None:
             return None
-        mesh = read_fields(file)
         n_nodes = len(mesh.points_m)
-        coordinates = {
-            "time_s": xr.Variable(("time_s",), mesh.time_s, attributes("time_s")),
-            "x_m": xr.Variable(("node",), mesh.points_m[:, 0], attributes("x_m")),
-            "y_m": xr.Variable(("node",), mesh.points_m[:, 1], attributes("y_m")),
-            "component": xr.Variable(("component",), ["x", "y"], attributes("component")),
-        }
-        variables = {"cell_nodes": xr.Variable(("cell", "corner"), mesh.cells, attributes("cell_nodes"))}
+        x_m, y_m = mesh.points_m.T
+        coordinates = variables(("node",), {"x_m": x_m, "y_m": y_m})
+        coordinates |= variables(("time_s",), {"time_s": mesh.time_s})
+        coordinates |= variables(("component",), {"component": ["x", "y"]})
+        found = variables(("cell", "corner"), {"cell_nodes": mesh.cells})
         with open_hdf5(mesh.file) as hdf5:
             for kind, dim, size in (("Point", "node", n_nodes), ("Cell", "cell", len(mesh.cells))):
                 for name in hdf5["VTKHDF/Steps"].get(f"{kind}DataOffsets", ()):
                     shape = len(mesh.time_s), size
-                    variables[name] = self._stored_snapshots(mesh.file, hdf5, f"{kind}Data", name, dim, shape)
-        return xr.Dataset(variables, coordinates, self._attributes())
+                    found[name] = self._stored_snapshots(mesh.file, hdf5, f"{kind}Data", name, dim, shape)
+        return xr.Dataset(found, coordinates, self._attributes())
 
     @cached_property
     def probes(self) -> xr.Dataset | None:
@@ -287,26 +433,27 @@ class OpenRun:
         file = self.folder / "probes.h5"
         if not belongs(file) or is_open(result_file(file)):
             return None
-        probes = read_probes(file)
-        coordinates = {
-            "time_s": xr.Variable(("time_s",), probes.time_s, attributes("time_s")),
-            "probe": xr.Variable(("probe",), list(probes.names), attributes("probe")),
-            "x_m": xr.Variable(("probe",), probes.x_m, attributes("x_m")),
-            "y_m": xr.Variable(("probe",), probes.y_m, attributes("y_m")),
-        }
+        file = result_file(file)
         with open_hdf5(file) as hdf5:
-            variables = {
-                name: xr.Variable(("time_s", "probe"), values, self._of_motion(hdf5[name], name))
-                for name, values in probes.fields.items()
-            }
-        return xr.Dataset(variables, coordinates, self._attributes())
+            require("name" in hdf5, file, "no data set 'name'")
+            names = [str(name) for name in hdf5["name"].asstr()[()]]
+            x_m, y_m, time_s = (dataset(hdf5, name, 1)[()] for name in ("x_m", "y_m", "time_s"))
+            require(len(x_m) == len(y_m) == len(names), file, "names and places differ in number")
+            records = {}
+            for name in PROBE_FIELDS:
+                found, shape = dataset(hdf5, name, 2), (len(time_s), len(names))
+                require(found.shape == shape, file, f"{name} is {found.shape}; it must be {shape}")
+                records[name] = xr.Variable(("time_s", "probe"), found[()], self._of_motion(found, name))
+        coordinates = variables(("probe",), {"probe": names, "x_m": x_m, "y_m": y_m})
+        coordinates |= variables(("time_s",), {"time_s": time_s})
+        return xr.Dataset(records, coordinates, self._attributes())
 
     def absolute_stress(self, records: xr.Dataset) -> xr.Dataset:
         """The whole stress of `probes` or `snapshots`, Pa, positive in tension: as it is recorded, but NaN
         where prescribed tractions determine no state before the event: stress_xx_Pa, stress_zz_Pa in plane
         strain, and all of tractions that vary along x. To files of versions that recorded the change the
         state of run.info["prestress"] is added. Raises DataError where the records have no stress."""
-        before = self._place.prestress(self.case)
+        before = self.prestress
         names = [name for name in STRESSES if name in records]
         require(bool(names), self.folder, "these records have no stress")
         whole = {}
@@ -314,28 +461,31 @@ class OpenRun:
             attrs = records[name].attrs
             long_name = str(attrs.get("long_name", "")).removesuffix(CHANGE)
             added = 0.0 if before is None else before[name]
-            if self._place.records_prestress:
+            if self.records_prestress:
                 added *= 0.0  # is there; what is not known stays NaN
             whole[name] = (records[name] + added).assign_attrs(
                 attrs | {"long_name": f"{long_name}, absolute"}
             )
         return xr.Dataset(whole, attrs=records.attrs)
 
-    def _attributes(self) -> dict[str, str]:
-        return {"title": str(self.case.get("title", "")), "status": self.status, "folder": str(self.folder)}
-
     def _from_table(self, file: Path, dim: str, finite: bool = True) -> xr.Dataset:
-        table = read_table(result_file(file), growing=self._place.growing)
-        variables = table_variables(table, dim, finite)
-        require(dim in variables, file, f"no column '{dim}'")
-        return xr.Dataset(variables, attrs=self._attributes())
+        table = read_table(result_file(file), growing=self.place.growing)
+        columns = table_variables(table, dim, finite)
+        require(dim in columns, file, f"no column '{dim}'")
+        return xr.Dataset(columns, attrs=self._attributes())
+
+    def _of_points(self, file: Path) -> xr.Dataset:
+        """A table of the points of fronts."""
+        points = table_variables(read_table(result_file(file), growing=self.place.growing), "point")
+        points["front_id"] = points["front_id"].astype(np.int64)
+        return xr.Dataset(points, attrs=self._attributes()).set_coords(["front_id", "x_m", "onset_s"])
 
     def _of_motion(self, found: h5py.Dataset, name: str) -> dict[str, str]:
         """Attributes of what counts from the state before the event, where that is not the unloaded one."""
         attrs = attributes_of(found, name)
-        of_state = () if self._place.records_prestress else ("strain", "stress")
+        of_state = () if self.records_prestress else ("strain", "stress")
         changes = ("u_", "displacement", *of_state)
-        if name.startswith(changes) and self._place.prestress(self.case) is not None:
+        if name.startswith(changes) and self.prescribed:
             attrs["long_name"] += CHANGE
         return attrs
 
@@ -368,15 +518,21 @@ class OpenRun:
         return stored(dims, array, self._of_motion(found, name))
 
     def _open_history(self, file: Path) -> xr.Dataset:
-        x_m = self.tractions["x_m"].to_numpy()
-        time_s, fields = open_history(file, x_m)
-        n = n_finite(time_s, *fields.values()) if self.status == BLEW_UP else len(time_s)
-        variables = {
-            name: xr.Variable(("time_s", "x_m"), values[:n], attributes(name))
-            for name, values in fields.items()
-        }
-        coordinates = {
-            "time_s": xr.Variable(("time_s",), time_s[:n], attributes("time_s")),
-            "x_m": self.tractions["x_m"].variable,
-        }
-        return xr.Dataset(variables, coordinates, self._attributes())
+        time_s, fields = open_history(file, self.x_m)
+        for name in HISTORY_FIELDS if self.status != BLEW_UP else ():
+            require(np.isfinite(fields[name]), file, f"a value of {name} is not finite")
+        coordinates = variables(("time_s",), {"time_s": time_s}) | {"x_m": self.tractions["x_m"].variable}
+        return xr.Dataset(variables(("time_s", "x_m"), fields), coordinates, self._attributes())
+
+
+def open_run(folder: Path, kept: Kept | None = None) -> OpenRun:
+    """The run in a folder; that of a sequence is refused."""
+    return OpenRun(read_place(folder), kept)
+
+
+def drawn_history(run: OpenRun) -> xr.Dataset:
+    """The history, refused where a picture would have fewer than two times or nodes."""
+    history, file = run.history, run.folder / "interface.h5"
+    require(min(history.sizes["time_s"], history.sizes["x_m"]) >= 2, file, "fewer than two times or nodes")
+    require_ascending(file, "time_s", history["time_s"].to_numpy())
+    return history

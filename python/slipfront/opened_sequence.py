@@ -4,20 +4,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from copy import deepcopy
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any, overload
+from typing import TypeVar, overload
 
 import numpy as np
 import xarray as xr
 
-from slipfront.files import DataError, Table, exists, read_table
-from slipfront.folder import LIST, SEQUENCE, problem, read_list, result_file
+from slipfront.files import Table, exists, read_table
+from slipfront.folder import LIST, SEQUENCE, read_list, result_file
 from slipfront.given import kept_path
-from slipfront.opened import Kept, OpenRun, read_case, stored_history, table_variables
-from slipfront.read import Place, is_sequence, read_place, require
+from slipfront.opened import Kept, Opened, OpenRun, open_run, stored_history, table_variables
+from slipfront.read import is_sequence, read_place, require
 from slipfront.units import attributes
 
 # Words for the columns of events.csv and loading.csv that mean something else there, or are theirs alone.
@@ -80,98 +79,38 @@ def numbers_of_events(table: Table) -> np.ndarray:
     return numbers.astype(np.int64)
 
 
-class Runs(Sequence[OpenRun]):
-    """The events of a sequence as runs, each opened when it is asked for."""
+Part = TypeVar("Part")
 
-    def __init__(self, place: Place, n_events: int, kept: Kept | None) -> None:
-        self._place, self._n_events, self._kept = place, n_events, kept
+
+class Parts(Sequence[Part]):
+    """Parts of a sequence of events, each opened by its number, from 1, when it is asked for."""
+
+    def __init__(self, n: int, open_part: Callable[[int], Part], what: str) -> None:
+        self._n, self._open, self._what = n, open_part, what
 
     def __len__(self) -> int:
-        return self._n_events
+        return self._n
 
     @overload
-    def __getitem__(self, index: int) -> OpenRun: ...
+    def __getitem__(self, index: int) -> Part: ...
     @overload
-    def __getitem__(self, index: slice) -> list[OpenRun]: ...
-    def __getitem__(self, index: int | slice) -> OpenRun | list[OpenRun]:
-        at = range(self._n_events)[index]
+    def __getitem__(self, index: slice) -> list[Part]: ...
+    def __getitem__(self, index: int | slice) -> Part | list[Part]:
+        at = range(self._n)[index]
         return self._open(at + 1) if isinstance(at, int) else [self._open(k + 1) for k in at]
 
     def __repr__(self) -> str:
-        return f"<{self._n_events} runs: {self._place.folder / 'events'}>"
-
-    def _open(self, number: int) -> OpenRun:
-        """Refuses the folder of another sequence: the whole one's list has the checksum of each event's."""
-        folder, name = self._place.folder, f"events/{number:04}"
-        sums = read_list(folder)
-        if sums is not None:
-            of_event = f"{name}/{LIST}"
-            require(of_event in sums, folder / name, f"not in {LIST}: not of this sequence")
-            wrong = problem(folder, of_event, sums[of_event])
-            if wrong is not None:
-                raise DataError(wrong)
-        return OpenRun(read_place(folder / name), self._kept)
+        return f"<{self._n} {self._what}>"
 
 
-class SlowSlip(Sequence[xr.Dataset]):
-    """Histories of slow slip, each opened when it is asked for."""
-
-    def __init__(self, folder: Path, n_phases: int, kept: Kept | None, attrs: dict[str, str]) -> None:
-        self._folder, self._kept, self._attrs = folder, kept, attrs
-        self._files = [folder / f"slow/{k:04}/interface.h5" for k in range(1, n_phases + 1)]
-
-    def __len__(self) -> int:
-        return len(self._files)
-
-    @overload
-    def __getitem__(self, index: int) -> xr.Dataset: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[xr.Dataset]: ...
-    def __getitem__(self, index: int | slice) -> xr.Dataset | list[xr.Dataset]:
-        files = self._files[index]
-        return self._open(files) if isinstance(files, Path) else [self._open(file) for file in files]
-
-    def _open(self, file: Path) -> xr.Dataset:
-        history = stored_history(result_file(file, self._folder), self._kept, self._attrs)
-        history["time_s"].attrs["long_name"] = "time since normal loading"
-        return history
-
-
-class OpenSequence:
+class OpenSequence(Opened):
     """The results of a sequence of slip events. Undefined numbers are NaN; a file is read, and compared with
     its checksum, when what it holds is first asked for. Raises DataError where a file is missing, damaged or
     of another sequence."""
 
-    def __init__(self, place: Place, kept: Kept | None = None) -> None:
-        self._place = place
-        self._kept = kept
-
     def __repr__(self) -> str:
-        title = self.case.get("title") or self._place.name
-        n = self._place.info.get("events", 0)
-        return f"<slipfront sequence '{title}', {n} events, {self.status}: {self.folder}>"
-
-    @property
-    def folder(self) -> Path:
-        """Where the files are: the sequence's folder, or its unfinished/."""
-        return self._place.folder
-
-    @property
-    def info(self) -> dict[str, Any]:
-        """sequence.json: version, end, wave speeds, number of events, largest friction, last state, imbalance
-        of energy."""
-        return deepcopy(self._place.info)
-
-    @property
-    def status(self) -> str:
-        """How the sequence ended: complete, interrupted, blew_up, failed, or running."""
-        return self._place.status
-
-    @property
-    def case(self) -> dict[str, Any]:
-        """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
-        are the copies of the sequence, by their whole paths."""
-        return read_case(self.folder)
+        n = self.place.info.get("events", 0)
+        return f"<slipfront sequence '{self.title or self.name}', {n} events, {self.status}: {self.folder}>"
 
     @cached_property
     def events(self) -> xr.Dataset:
@@ -199,7 +138,15 @@ class OpenSequence:
     @property
     def runs(self) -> Sequence[OpenRun]:
         """The runs of `events`, in order; runs[0] is that of event 1. An event under way is none of them."""
-        return Runs(self._place, self.events.sizes["event"], self._kept)
+
+        def open_event(number: int) -> OpenRun:
+            event = self.folder / f"events/{number:04}"
+            result_file(
+                event / LIST, self.folder
+            )  # refuses that of another sequence: the list has its checksum
+            return open_run(event, self._kept)
+
+        return Parts(self.events.sizes["event"], open_event, f"runs: {self.folder / 'events'}")
 
     @property
     def slow(self) -> Sequence[xr.Dataset]:
@@ -210,7 +157,14 @@ class OpenSequence:
         behind_the_last = self.status == "complete" and exists(folder / f"slow/{n_events + 1:04}")
         listed = any(name.startswith("slow/") for name in read_list(folder) or ())
         n_phases = n_events + behind_the_last if listed or exists(folder / "slow") else 0
-        return SlowSlip(folder, n_phases, self._kept, self._attributes())
+
+        def open_phase(number: int) -> xr.Dataset:
+            file = result_file(folder / f"slow/{number:04}/interface.h5", folder)
+            history = stored_history(file, self._kept, self._attributes())
+            history["time_s"].attrs["long_name"] = "time since normal loading"
+            return history
+
+        return Parts(n_phases, open_phase, f"histories of slow slip: {folder / 'slow'}")
 
     @cached_property
     def slip(self) -> xr.DataArray:
@@ -226,18 +180,20 @@ class OpenSequence:
         found.attrs = attributes("slip_m", long_name="slip of the event")
         return found
 
-    def _attributes(self) -> dict[str, str]:
-        return {"title": str(self.case.get("title", "")), "status": self.status, "folder": str(self.folder)}
-
     def _table(self, name: str) -> Table:
         return read_table(result_file(self.folder / name))
+
+
+def open_sequence(folder: Path, kept: Kept | None = None) -> OpenSequence:
+    """The sequence in a folder."""
+    return OpenSequence(read_place(folder, SEQUENCE), kept)
 
 
 def opened(folder: Path, kept: Kept | None = None) -> OpenRun | OpenSequence:
     """By what the folder holds."""
     if is_sequence(folder):
-        return OpenSequence(read_place(folder, SEQUENCE), kept)
-    return OpenRun(read_place(folder), kept)
+        return open_sequence(folder, kept)
+    return open_run(folder, kept)
 
 
 def open(folder: str | os.PathLike[str]) -> OpenRun | OpenSequence:

@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.integrate import cumulative_trapezoid
 
 from slipfront.errors import CaseError
 from slipfront.files import DataError, one_line, open_file, read_text
 from slipfront.given import in_order, number, path, shown
 from slipfront.read import require, require_ascending
-from slipfront.units import attributes
+from slipfront.units import variables
 
 OFF_LINE = 1e-3  # share of a line's length that its places may be beside it
 # Fortran writes 1.5D-07, and 1.5-107 where the exponent has three digits.
@@ -89,15 +90,9 @@ def history_of(
     require(np.diff(x_m[order]) > 0, file, "two places are one")
     for name, values in fields.items():
         require(np.isfinite(values), file, f"a value of {name} is missing or not finite")
-    variables = {
-        name: xr.Variable(("time_s", "x_m"), np.asarray(values, np.float64)[:, order], attributes(name))
-        for name, values in fields.items()
-    }
-    coordinates = {
-        name: xr.Variable((name,), values, attributes(name))
-        for name, values in (("time_s", time_s), ("x_m", x_m[order]))
-    }
-    return xr.Dataset(variables, coordinates, {"source": f"{code}: {file}"})
+    columns = {name: np.asarray(values, np.float64)[:, order] for name, values in fields.items()}
+    axes = variables(("time_s",), {"time_s": time_s}) | variables(("x_m",), {"x_m": x_m[order]})
+    return xr.Dataset(variables(("time_s", "x_m"), columns), axes, {"source": f"{code}: {file}"})
 
 
 # ---- SEM2DPACK
@@ -306,7 +301,7 @@ class Receiver:
             slip = self.column(f"Sl{along}")
             return slip, np.gradient(slip, self.time_s)
         v = self.column(f"SR{along}")
-        return np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(self.time_s)))), v
+        return cumulative_trapezoid(v, self.time_s, initial=0), v
 
     def largest_slip_m(self, along: str) -> float:
         """0 where it is not told."""

@@ -12,17 +12,9 @@ from slipfront import _core
 from slipfront.units import unit_of
 
 LISTED = (
-    _core.ExponentialFit,
-    _core.Info,
-    _core.Loads,
-    _core.MeshChoice,
-    _core.NodeSpread,
-    _core.Ratio,
-    _core.Rupture,
-    _core.Spread,
-    _core.WaveSpeeds,
-    _core.WellPosedness,
-)
+    _core.ExponentialFit, _core.Info, _core.Loads, _core.MeshChoice, _core.NodeSpread, _core.Ratio,
+    _core.Rupture, _core.Spread, _core.WaveSpeeds, _core.WellPosedness,
+)  # fmt: skip
 INDENT = "  "
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,33 +20,19 @@ from slipfront.files import (
     Table,
     dataset,
     is_folder,
-    is_number,
-    number,
     open_file,
     open_hdf5,
     read_bytes,
     read_json_table,
     read_table,
-    read_toml,
 )
 from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, belongs, result_file, verify_checksums
 
 STATIC_COLUMNS = ("x_m", "t_s_Pa", "p_s_Pa")
 FRONT_COLUMNS = (
-    "front_id",
-    "x_m",
-    "onset_s",
-    "direction",
-    "v_tip_m_per_s",
-    "t_s_Pa",
-    "p_s_Pa",
-    "t_d_Pa",
-    "p_d_Pa",
-    "t_r_Pa",
-    "p_r_Pa",
-    "U_s_J_per_m3",
-    "U_r_J_per_m3",
-)
+    "front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", "t_s_Pa", "p_s_Pa", "t_d_Pa", "p_d_Pa",
+    "t_r_Pa", "p_r_Pa", "U_s_J_per_m3", "U_r_J_per_m3",
+)  # fmt: skip
 # Columns of fracture.csv that pages and tables take.
 FRACTURE_COLUMNS = ("breakdown_work_J_per_m2", "cohesive_zone_m", "G_slip_J_per_m2")
 # What the time says that a tip takes at a row of fronts.csv; there is a speed with the first alone.
@@ -55,33 +41,14 @@ SPEED_KINDS = ("front", "triggered", "simultaneous", "path_end")
 HISTORY_FIELDS = ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")
 # Data sets of probes.h5, [times, probes].
 PROBE_FIELDS = (
-    "u_x_m",
-    "u_y_m",
-    "v_x_m_per_s",
-    "v_y_m_per_s",
-    "strain_xx",
-    "strain_yy",
-    "strain_zz",
-    "strain_xy",
-    "stress_xx_Pa",
-    "stress_yy_Pa",
-    "stress_zz_Pa",
-    "stress_xy_Pa",
-)
+    "u_x_m", "u_y_m", "v_x_m_per_s", "v_y_m_per_s", "strain_xx", "strain_yy", "strain_zz", "strain_xy",
+    "stress_xx_Pa", "stress_yy_Pa", "stress_zz_Pa", "stress_xy_Pa",
+)  # fmt: skip
 # Columns of energy.csv without their unit, J per m of thickness.
 ENERGY_TERMS = (
-    "strain",
-    "kinetic",
-    "machine",
-    "top_work",
-    "trigger_work",
-    "prestress_work",
-    "friction_work",
-    "contact_work",
-    "damping_work",
-    "boundary_work",
-    "coupling_work",
-)
+    "strain", "kinetic", "machine", "top_work", "trigger_work", "prestress_work", "friction_work",
+    "contact_work", "damping_work", "boundary_work", "coupling_work",
+)  # fmt: skip
 VTK_QUAD = 9
 BLOCK_BYTES = 4096  # a head of a file of rows is of whole ones
 
@@ -141,6 +108,11 @@ class Front:
         return float(np.interp(time_s, np.maximum.accumulate(self.onset_s), self.x_m))
 
 
+def longest_each_way(fronts: Iterable[Front]) -> dict[int, Front]:
+    """By direction; the first of equal ones."""
+    return {front.direction: front for front in sorted(fronts, key=lambda front: (front.length_m, -front.id))}
+
+
 @dataclass(frozen=True)
 class Fields:
     """The mesh of fields.vtkhdf and the times of its steps; the fields themselves are read step by step."""
@@ -163,27 +135,6 @@ class Fields:
         if not np.isfinite(speed).all():
             raise DataError(f"{self.file}: a number of step {step} of velocity_m_per_s is not finite")
         return speed
-
-
-@dataclass(frozen=True)
-class History:
-    """Slip rate and pressure along the interface over time, from interface.h5."""
-
-    time_s: np.ndarray  # [times]
-    x_m: np.ndarray  # [nodes]
-    slip_rate_m_per_s: np.ndarray  # [times, nodes]
-    p_Pa: np.ndarray  # [times, nodes]; zero where the contact is open
-
-
-@dataclass(frozen=True)
-class Probes:
-    """What strain gauges record, from probes.h5."""
-
-    names: tuple[str, ...]  # [probes]
-    x_m: np.ndarray  # [probes]
-    y_m: np.ndarray  # [probes]; below 0 in the base
-    time_s: np.ndarray  # [times]
-    fields: dict[str, np.ndarray]  # by the names of PROBE_FIELDS. [times, probes]
 
 
 @dataclass(frozen=True)
@@ -217,23 +168,6 @@ class Place:
         """Whether files may end within a row."""
         return self.status in WITHOUT_END
 
-    def prestress(self, case: dict[str, Any]) -> dict[str, float] | None:
-        """The state before the event that prescribed tractions leave out of displacements, Pa by the names of
-        the records; NaN where they determine none. None without prescribed tractions."""
-        if entry(case, "loading", "method") != "prestress":
-            return None
-        told = self.info.get("prestress")  # there was none in older files
-        found = told if isinstance(told, dict) else {}
-        before: dict[str, Any] = {n: found.get(n) for n in PROBE_FIELDS if n.startswith("stress")}
-        if entry(case, "material", "plane") == "stress":
-            before["stress_zz_Pa"] = 0.0
-        return {name: float(value) if is_number(value) else np.nan for name, value in before.items()}
-
-    @property
-    def records_prestress(self) -> bool:
-        """Whether recorded strain and stress hold it; else they are the change from it, as in older files."""
-        return entry(self.info, "prestress", "recorded") is True
-
     def mark(self, last_s: float) -> str:
         """How a run ended that did not come to its end, for titles; empty for a complete one."""
         ending = STATUSES[self.status]
@@ -252,82 +186,6 @@ class Place:
             return list(self.notes)
         told = f"{self.folder}: {self.with_reason(mark)}: the figures show what there is"
         return [told.replace("µs", "us"), *self.notes]
-
-
-@dataclass(frozen=True)
-class Run:
-    """One run's results. `case` is case.resolved.toml as a dictionary."""
-
-    place: Place
-    case: dict[str, Any]
-    static_x_m: np.ndarray  # [nodes]
-    static_ratio: np.ndarray  # [nodes], t_s / p_s
-    fronts: list[Front]
-    history: History
-    fields: Fields | None  # of a run without snapshots
-    balance: Balance
-
-    @property
-    def name(self) -> str:
-        return self.place.name
-
-    @property
-    def info(self) -> dict[str, Any]:
-        """run.json as a dictionary."""
-        return self.place.info
-
-    @property
-    def status(self) -> str:
-        """How the run ended, one of STATUSES."""
-        return self.place.status
-
-    @property
-    def reason(self) -> str:
-        """Why it ended so; may be empty."""
-        return self.place.reason
-
-    @property
-    def mark(self) -> str:
-        """For titles: how a run ended that did not come to its end; empty for a complete one."""
-        return self.place.mark(self.history.time_s[-1])
-
-    @property
-    def remarks(self) -> list[str]:
-        """Lines to print beside the figures."""
-        lines = self.place.remarks(self.history.time_s[-1])
-        if any((front.speed_kind == "").any() for front in self.fronts):
-            lines.append(
-                f"{self.place.folder / 'fronts.csv'}: of a program that did not tell nodes released by the "
-                "trigger or at once from a front: the fastest speeds may be of such"
-            )
-        return lines
-
-    def parameter(self, key: str) -> float:
-        """Number of a dotted key of the case file."""
-        return number(self.place.folder / "case.resolved.toml", self.case, key)
-
-    def fact(self, key: str) -> float:
-        """Number of a dotted key of run.json."""
-        return number(self.place.folder / "run.json", self.info, key)
-
-    @property
-    def c_L_m_per_s(self) -> float:
-        return self.fact("wave_speeds.c_L_m_per_s")
-
-    @property
-    def kind(self) -> str:
-        """What starts the event: left, right, spontaneous, ..."""
-        return str(entry(self.case, "event", "kind"))
-
-    @property
-    def prescribed(self) -> bool:
-        """Whether the tractions before the event were given, not found by tilting and shearing the plate."""
-        return entry(self.case, "loading", "method") == "prestress"
-
-    def end_of(self, front: Front) -> str | None:
-        """How a front ends, from run.json; None where it is not told."""
-        ends = (f.get("end") for f in self.info.get("fronts", []) if f.get("id") == front.id)
-        return next(ends, None)
 
 
 def entry(table: dict[str, Any], part: str, key: str) -> Any:
@@ -437,24 +295,6 @@ def read_fracture(
     }
 
 
-def checked_history(file: Path, history: History, blew_up: bool) -> History:
-    """The history, of a run that blew up as far as it is finite."""
-    arrays = history.time_s, history.slip_rate_m_per_s, history.p_Pa
-    if blew_up and len({len(a) for a in arrays}) == 1:
-        n = n_finite(*arrays)
-        time_s, rate, p = (a[:n] for a in arrays)
-        history = History(time_s, history.x_m, rate, p)
-    require(min(len(history.time_s), len(history.x_m)) >= 2, file, "fewer than two times or nodes")
-    require_ascending(file, "time_s", history.time_s)
-    require_ascending(file, "x_m", history.x_m)
-    for name in ("slip_rate_m_per_s", "p_Pa"):
-        data = getattr(history, name)
-        shape = (len(history.time_s), len(history.x_m))
-        require(data.shape == shape, file, f"{name} is {data.shape}, not {shape}")
-        require(np.isfinite(data), file, f"a value of {name} is not finite")
-    return history
-
-
 def is_open(file: Path) -> bool:
     """Whether a file of rows is not finished: it begins with the length of its head, not as HDF5 files do."""
     return head_bytes(file) is not None
@@ -465,21 +305,6 @@ def head_bytes(file: Path) -> int | None:
     with open_file(file) as stream:
         length = int.from_bytes(stream.read(8), "little")
     return length if length > 0 and length % BLOCK_BYTES == 0 else None
-
-
-def read_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
-    """The history of a run whose nodes are at `x_m`, as far as there is one."""
-    file = result_file(file)
-    if is_open(file):
-        time_s, fields = open_history(file, x_m)
-        history = History(time_s, x_m, fields["slip_rate_m_per_s"], fields["p_Pa"])
-        return checked_history(file, history, blew_up)
-    with open_hdf5(file) as hdf5:
-        time_s, found_m = (dataset(hdf5, name, 1)[()] for name in ("time_s", "x_m"))
-        rate, p = (dataset(hdf5, name, 2)[()] for name in ("slip_rate_m_per_s", "p_Pa"))
-    history = checked_history(file, History(time_s, found_m, rate, p), blew_up)
-    require_same_nodes(file, found_m, x_m)
-    return history
 
 
 def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
@@ -497,21 +322,6 @@ def open_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.
     rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
     fields = {name: rows[:, 1 + k * n : 1 + (k + 1) * n] for k, name in enumerate(names)}
     return rows[:, 0], fields
-
-
-def read_probes(file: Path) -> Probes:
-    file = result_file(file)
-    with open_hdf5(file) as hdf5:
-        if "name" not in hdf5:
-            raise DataError(f"{file}: no data set 'name'")
-        names = tuple(str(name) for name in hdf5["name"].asstr()[()])
-        x_m, y_m, time_s = (dataset(hdf5, name, 1)[()] for name in ("x_m", "y_m", "time_s"))
-        fields = {name: dataset(hdf5, name, 2)[()] for name in PROBE_FIELDS}
-    shape = len(time_s), len(names)
-    require(len(x_m) == len(y_m) == shape[1], file, "names and places differ in number")
-    for name, values in fields.items():
-        require(values.shape == shape, file, f"{name} is {values.shape}; it must be {shape}")
-    return Probes(names, x_m, y_m, time_s, fields)
 
 
 def read_fields(file: Path) -> Fields:
@@ -608,31 +418,6 @@ def read_place(folder: Path, status_file: str = RUN) -> Place:
 def require_same_nodes(file: Path, x_m: np.ndarray, static_x_m: np.ndarray) -> None:
     same = len(x_m) == len(static_x_m) and np.allclose(x_m, static_x_m)
     require(same, file, "its nodes are not those of static.csv: the files are of two runs")
-
-
-#: Reads the history of a run, given its file, the positions of its nodes, and whether it blew up.
-HistoryReader = Callable[[Path, np.ndarray, bool], History]
-
-
-def read_run(folder: Path, read_its_history: HistoryReader = read_history) -> Run:
-    place = read_place(folder)
-    folder, growing = place.folder, place.growing
-    static = read_static(folder / "static.csv")
-    blew_up = place.status == BLEW_UP
-    history = read_its_history(folder / "interface.h5", static["x_m"], blew_up)
-    has_fields = belongs(folder / "fields.vtkhdf") and not is_open(result_file(folder / "fields.vtkhdf"))
-    return Run(
-        place=place,
-        case=read_toml(result_file(folder / "case.resolved.toml")),
-        static_x_m=static["x_m"],
-        static_ratio=ratio(static["t_s_Pa"], static["p_s_Pa"]),
-        fronts=read_fronts(folder / "fronts.csv", growing)
-        if not growing or belongs(folder / "fronts.csv")
-        else [],
-        history=history,
-        fields=read_fields(folder / "fields.vtkhdf") if has_fields else None,
-        balance=read_balance(folder / "energy.csv", growing, blew_up),
-    )
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -20,9 +20,8 @@ import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import BlowUpError, CaseError, WriteError
 from slipfront.given import array, flag, in_order, kept_path, number, path, shown, table, text, whole
-from slipfront.opened import Kept, OpenRun
+from slipfront.opened import Kept, OpenRun, open_run
 from slipfront.opened_sequence import OpenSequence, opened
-from slipfront.read import read_place
 
 # A path, the text of a case file, or its tables as dictionaries.
 CaseLike = str | os.PathLike[str] | Mapping[str, Any]
@@ -31,6 +30,7 @@ Progress = Callable[[str, int, int], None]
 # An interval of simulated time, s, and a function that is shown the interface at it.
 Observer = tuple[float, Callable[[_core.InterfaceState], str | None]]
 
+DEFAULT_MATERIAL = {"plane": "stress"}  # a case sets at least one key
 LARGEST_INTEGER = 2**63  # of TOML
 MOST_THREADS = 1024
 CHECKPOINT_EVERY_S = 300.0
@@ -309,7 +309,7 @@ def run_with_law(
     folder = temporary_folder()
     try:
         compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, of_states, show), progress)
-        return OpenRun(read_place(folder), Kept(folder))
+        return open_run(folder, Kept(folder))
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
@@ -320,3 +320,45 @@ def info(case: CaseLike, changes: Mapping[str, Any] | None = None, /, **tables: 
     stability of uniform sliding; of loads given as forces the displacements, by statics. Case and changes as
     for `run`; raises CaseError."""
     return make_case(case, changes, tables).info()
+
+
+# ---- What follows from materials and friction alone. Each table is given as in a case file, by keyword; what
+# is not given has the case file's default.
+
+
+def wave_speeds(**material: Any) -> _core.WaveSpeeds:
+    """Speeds of longitudinal, shear and Rayleigh waves, m/s: c_L_m_per_s, c_S_m_per_s, c_R_m_per_s.
+
+    material: keys of [material], such as youngs_modulus_Pa=2.6e9, poissons_ratio=0.37,
+    density_kg_per_m3=1200, plane="strain"."""
+    return make_case({"material": {**DEFAULT_MATERIAL, **material}}, None, {}).wave_speeds
+
+
+def stable_step_s(element_size_m: float, **material: Any) -> float:
+    """Largest stable time step of the explicit scheme in square elements, s; with the material's damping.
+
+    The step of a plate may be smaller by what its corners ask for: `info` tells it."""
+    size_m = number(element_size_m, "element_size_m", above=0, finite=True)
+    return make_case({"material": {**DEFAULT_MATERIAL, **material}}, None, {}).stable_step_s(size_m)
+
+
+def well_posedness(
+    friction: Mapping[str, Any],
+    *,
+    pressure_Pa: float,
+    element_size_m: float,
+    longest_wavelength_m: float,
+    material: Mapping[str, Any] | None = None,
+    base: Mapping[str, Any] | None = None,
+) -> _core.WellPosedness:
+    """Whether slow uniform sliding under a friction law has a growth that a finer mesh would not change.
+
+    friction, material, base: tables of a case file, base={"kind": "body", ...} for a second half-space.
+    pressure_Pa: uniform, positive in compression. longest_wavelength_m: such as the length of the interface.
+    Theory: docs/stability.md."""
+    p_Pa = number(pressure_Pa, "pressure_Pa", above=0, finite=True)
+    size_m = number(element_size_m, "element_size_m", above=0, finite=True)
+    wavelength_m = number(longest_wavelength_m, "longest_wavelength_m", above=0, finite=True)
+    given = {"friction": friction, "material": material, "base": base}
+    tables = {name: table(value, name) for name, value in given.items() if value is not None}
+    return make_case(tables, None, {}).well_posedness(p_Pa, size_m, wavelength_m)

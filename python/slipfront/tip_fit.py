@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.integrate import cumulative_trapezoid
+from scipy.optimize import least_squares
 
 from slipfront import _core
 from slipfront.errors import CaseError
@@ -19,8 +21,8 @@ from slipfront.fracture import case_of_bodies
 from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth, some_gauges, weights
 from slipfront.given import array, flag, instance, number, shown, whole
 from slipfront.opened import OpenRun
-from slipfront.ranges import beyond
 from slipfront.running import CaseLike
+from slipfront.units import beyond
 
 LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
 LARGE_ERROR = 0.5  # of Gamma
@@ -36,6 +38,7 @@ LEAST_TIMES = 8
 STIFF_STRAIN, STIFF_PA = 0.002, 1e9
 NORMAL_MEDIAN = 0.6745  # of the size of a normal variable, over its standard deviation
 ROUNDING = 1e-24  # of squares: a record that changes less is constant
+LEAST_GAIN, MOST_TRIALS = 1e-9, 60  # of least squares: share of the square that a step is to take off it
 ROUNDS = 3  # of fits of several tips, each without the others
 LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
 #: Lag of a low-pass, in the time that the front takes for a height: where the search begins, and its end. It
@@ -200,8 +203,7 @@ class Tip:
         if self.step:
             columns.append(level * stepped.reshape(-1, 1))
         if self.leaks:  # dy/dt = dx/dt - 2 pi f y: what it takes is the integral of what it leaves
-            steps_s, pairs = np.diff(self.time_s), self.data[:, 1:] + self.data[:, :-1]
-            gone = np.cumsum(np.pad(0.5 * pairs * steps_s, ((0, 0), (1, 0))), axis=1)
+            gone = cumulative_trapezoid(self.data, self.time_s, initial=0)
             columns.append(gone[:, at].reshape(-1, 1))
         return np.hstack(columns)
 
@@ -277,29 +279,6 @@ def scan(tip: Tip, speed: float, tip_s: float | None) -> float | None:
     tips = np.arange(ends[0], ends[1] + step_s, step_s)
     order = ranked([tip.trial(speed, t) for t in tips])
     return float(tips[order[0]]) if order else None
-
-
-def least_squares(
-    residual: Any, start: np.ndarray, steps: np.ndarray, low: np.ndarray, high: np.ndarray
-) -> np.ndarray:
-    """Levenberg and Marquardt; derivatives by differences over the steps."""
-    at, damping = start, 1e-3
-    now = residual(at)
-    for _ in range(60):
-        moves = np.diag(steps)
-        slopes = np.array([(residual(at + m) - residual(at - m)) / (2 * m.sum()) for m in moves]).T * steps
-        normal = slopes.T @ slopes
-        move = -steps * np.linalg.solve(normal + damping * np.diag(np.diag(normal) + 1e-300), slopes.T @ now)
-        tried = np.clip(at + move, low, high)
-        then = residual(tried)
-        gain = now @ now - then @ then
-        if gain > 0:
-            at, now, damping = tried, then, damping / 5
-        else:
-            damping *= 5
-        if damping > 1e8 or 0 < gain < 1e-9 * (now @ now):
-            break
-    return at
 
 
 def fit_tip(
@@ -403,7 +382,15 @@ def nearest(
     if lag_s > 0:
         sought.append((lag_s, 1e-2 * lag_s, 0.25 * tip.step_s, LONGEST_LAG * takes_s))
     start, steps, low, high = np.array(sought).T
-    found = least_squares(residual, start, steps, low, high)
+
+    def slopes(p: np.ndarray) -> np.ndarray:
+        return np.array([(residual(p + m) - residual(p - m)) / (2 * m.sum()) for m in np.diag(steps)]).T
+
+    if not np.isfinite(residual(start)).all():
+        return at_s, speed, lag_s
+    # Ended by what is gained alone: other tolerances are of numbers that are near 1.
+    options = {"x_scale": steps, "ftol": LEAST_GAIN, "xtol": None, "gtol": None, "max_nfev": MOST_TRIALS}
+    found = least_squares(residual, start, slopes, (low, high), **options).x
     tip.lag_s = float(found[-1]) if lag_s > 0 else 0.0
     return float(found[0]), speed if given else float(found[1]), tip.lag_s
 

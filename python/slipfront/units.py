@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike
 
 #: Endings of names, the longest first.
@@ -97,6 +100,20 @@ LONG_NAMES = {
 }
 
 
+#: What numbers of solids and slip fronts are, from gels to diamond, from the laboratory to great earthquakes:
+#: lowest, highest, and what it follows from; beyond that a unit is wrong.
+RANGES = {
+    "limiting_speed_m_per_s": (0.5, 2e4, "modulus and density"),
+    "strain": (1e-6, 0.02, "strain"),  # what gauges with amplifiers of 1 MHz resolve
+    "stress_Pa": (10.0, 1e10, "stress"),
+    "peak_t_Pa": (10.0, 1e10, "t_Pa"),
+    "residual_coefficient": (-1.0, 10.0, "t_Pa and p_Pa"),
+    "weakening_distance_m": (1e-10, 100.0, "slip_m"),
+    "breakdown_work_J_per_m2": (1e-5, 1e9, "t_Pa and slip_m"),
+    "Gamma_J_per_m2": (1e-5, 1e9, "strain or stress, modulus and y"),
+}
+
+
 @dataclass(frozen=True)
 class Unit:
     """What a quantity is shown in; `factor` is from SI to it."""
@@ -126,6 +143,11 @@ def attributes(name: str, **found: str) -> dict[str, str]:
     return {"units": unit_of(name), "long_name": LONG_NAMES.get(name, name_of(name))} | found
 
 
+def variables(dims: tuple[str, ...], columns: Mapping[str, Any]) -> dict[str, xr.Variable]:
+    """Arrays by their names, with units and words."""
+    return {name: xr.Variable(dims, values, attributes(name)) for name, values in columns.items()}
+
+
 def engineering(unit: str, values: ArrayLike) -> Unit:
     """The prefix with which the largest of the values is from 1 to below 1000; none but of m, s, Pa."""
     numbers = np.abs(np.asarray(values, dtype=float))
@@ -142,3 +164,16 @@ def quantity(value: float, unit: str, digits: int = 4) -> str:
     shown = engineering(unit, value)
     number = f"{value * shown.factor:.{digits}g}"
     return number if unit == "1" else f"{number} {shown.name}"
+
+
+def beyond(values: Mapping[str, float]) -> list[str]:
+    """What is said of each value out of its range; NaN passes."""
+    doubts = []
+    for name, value in values.items():
+        low, high, of = RANGES[name]
+        if value < low or value > high:
+            unit = "" if unit_of(name) == "1" else f" {unit_of(name)}"
+            doubts.append(
+                f"{name} is {value:.3g}, not from {low:g} to {high:g}{unit}: check the units of {of}"
+            )
+    return doubts

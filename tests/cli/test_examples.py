@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import slipfront
 from common import ROOT, call, require_done, sets
-from slipfront.read import Front, Run, read_run
+from slipfront.opened import OpenRun, open_run
+from slipfront.read import Front
 
 pytestmark = pytest.mark.slow
 
@@ -33,12 +34,12 @@ COARSE_M = {
 }
 
 
-def c_S(run: Run) -> float:
+def c_S(run: OpenRun) -> float:
     return run.fact("wave_speeds.c_S_m_per_s")
 
 
-def longest(run: Run, direction: int) -> Front:
-    return max((f for f in run.fronts if f.direction == direction), key=lambda front: front.length_m)
+def longest(run: OpenRun, direction: int) -> Front:
+    return max((f for f in run.front_list if f.direction == direction), key=lambda front: front.length_m)
 
 
 def speed_at(front: Front, x_m: float) -> float:
@@ -47,14 +48,14 @@ def speed_at(front: Front, x_m: float) -> float:
     return float(np.nanmean(front.v_tip_m_per_s[near]))
 
 
-def onset_s(run: Run, x_m: float) -> float:
+def onset_s(run: OpenRun, x_m: float) -> float:
     return min(
         float(np.interp(x_m, f.x_m[:: f.direction], f.onset_s[:: f.direction], left=np.inf, right=np.inf))
-        for f in run.fronts
+        for f in run.front_list
     )
 
 
-def modes(run: Run) -> set[str]:
+def modes(run: OpenRun) -> set[str]:
     return {front["mode"] for front in run.info["fronts"]}
 
 
@@ -71,7 +72,7 @@ def folder(program, tmp_path):
 
 @pytest.fixture
 def run(folder):
-    return lambda name, *changes: read_run(folder(name, *changes))
+    return lambda name, *changes: open_run(folder(name, *changes))
 
 
 def test_every_example_is_here():
@@ -88,7 +89,7 @@ def test_granite_breaks_both_ways_below_the_rayleigh_speed(run):
 
 def test_steel_slips_by_itself_far_from_the_edges_and_stops(run):
     block = run("steel")
-    first = min(block.fronts, key=lambda front: front.onset_s[0])
+    first = min(block.front_list, key=lambda front: front.onset_s[0])
     assert 0.1 < first.x_m[0] < 0.17
     assert "arrest" in {front["end"] for front in block.info["fronts"]}
 
@@ -127,7 +128,7 @@ def test_supershear_both_ways_and_its_energies_balance(run):
 def test_pulse_leaves_locked_interface_behind(run):
     strip = run("pulse")
     assert "pulse" in modes(strip)
-    rate = np.abs(strip.history.slip_rate_m_per_s)
+    rate = np.abs(strip.history.slip_rate_m_per_s.to_numpy())
     row = np.searchsorted(strip.history.time_s, 110e-6)
     assert np.count_nonzero(rate[row] > 1e-2 * rate[row].max()) < 0.3 * rate.shape[1]
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from common import refusal, require_done, run_json, sets
 from conftest import COARSE
-from slipfront.read import PROBE_FIELDS, read_probes
+from slipfront.opened import open_run
+from slipfront.read import PROBE_FIELDS
 
 PROBES = '[probes]\nx_m = [0.1, 0.05]\ny_m = [0.01, 0.0]\nnames = ["SG 1", "Kante ä"]\ninterval_s = 2e-6\n'
 NO_FIELDS = ("name", "rows", "probe", "row_value")
@@ -19,13 +20,13 @@ def probed(write_case):
 
 def test_probes_have_names_places_units_and_rows(program, probed, tmp_path):
     require_done(program("run", probed, "-o", "out", "-q"))
-    probes = read_probes(tmp_path / "out/probes.h5")
-    assert probes.names == ("SG 1", "Kante ä")
-    assert probes.x_m.tolist() == [0.1, 0.05] and probes.y_m.tolist() == [0.01, 0]
+    probes = open_run(tmp_path / "out").probes
+    assert probes.probe.values.tolist() == ["SG 1", "Kante ä"]
+    assert probes.x_m.values.tolist() == [0.1, 0.05] and probes.y_m.values.tolist() == [0.01, 0]
     assert probes.time_s[0] == 0 and np.all(np.diff(probes.time_s) > 1e-6)
     end_s = run_json(tmp_path / "out")["time_s"]
     assert end_s - 4e-6 < probes.time_s[-1] < end_s
-    assert set(probes.fields) == set(PROBE_FIELDS)
+    assert set(probes) == set(PROBE_FIELDS)
     with h5py.File(tmp_path / "out/probes.h5") as file:
         units = {name: file[name].attrs["unit"] for name in file if name not in NO_FIELDS}
         assert all(file[name].attrs["description"] for name in file)
@@ -36,8 +37,8 @@ def test_probes_have_names_places_units_and_rows(program, probed, tmp_path):
     # At the interface t = -stress_xy where the plate slides to +x: the traction before the event.
     with h5py.File(tmp_path / "out/interface.h5") as file:
         node = int(np.argmin(np.abs(file["x_m"][:] - 0.05)))
-        assert np.sign(probes.fields["stress_xy_Pa"][0, 1]) == np.sign(file["t_Pa"][0, node])
-        assert probes.fields["stress_yy_Pa"][0, 1] == pytest.approx(-file["p_Pa"][0, node], rel=0.2)
+        assert np.sign(probes["stress_xy_Pa"].values[0, 1]) == np.sign(file["t_Pa"][0, node])
+        assert probes["stress_yy_Pa"].values[0, 1] == pytest.approx(-file["p_Pa"][0, node], rel=0.2)
 
 
 def test_every_hdf5_file_says_where_it_comes_from(program, probed, tmp_path):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pytest
 from common import ROOT, WITH_PACKAGE, call, require_done
-from slipfront.read import read_run
+from slipfront.opened import open_run
 
 pytestmark = pytest.mark.slow
 
@@ -75,15 +75,15 @@ def test_all_of_it_runs(shell):
     for picture in ("first", "picture", "aluminium", "tail", "block", "fine/figures/energy_balance"):
         assert (shell.folder / f"{picture}.png").stat().st_size > 10_000
     runs = ("first", "aluminium", "stuck", "tail", "fine")
-    reached = {name: read_run(shell.folder / name) for name in runs}
+    reached = {name: open_run(shell.folder / name) for name in runs}
     for name, run in reached.items():
-        ends_m = [f.x_m[-1] for f in run.fronts]
+        ends_m = [f.x_m[-1] for f in run.front_list]
         assert (max(ends_m) > 0.19 and min(ends_m) < 0.01) == (name != "stuck"), name
     arrivals_s = [
-        next(f.onset_s[-1] for f in reached[name].fronts if f.direction < 0) for name in ("first", "tail")
+        next(f.onset_s[-1] for f in reached[name].front_list if f.direction < 0) for name in ("first", "tail")
     ]
     assert round(1e6 * (arrivals_s[0] - arrivals_s[1])) == 9
-    first, fine = (next(f for f in reached[n].fronts if f.direction > 0) for n in ("first", "fine"))
+    first, fine = (next(f for f in reached[n].front_list if f.direction > 0) for n in ("first", "fine"))
     assert abs(first.onset_s[-1] / fine.onset_s[-1] - 1) < 0.05
 
 

@@ -8,6 +8,7 @@ import json
 import draw
 from matplotlib.figure import Figure
 from slipfront.figures.__main__ import main
+from slipfront.opened import open_run
 
 
 def replace(file, old, new) -> None:
@@ -29,6 +30,11 @@ def change_json(file, change) -> None:
     content = json.loads(file.read_text())
     change(content)
     file.write_text(json.dumps(content))
+
+
+def read_run(folder):
+    """A run whose files are all compared with their checksums and read."""
+    return open_run(folder).checked()
 
 
 def one_line(capsys) -> str:

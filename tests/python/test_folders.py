@@ -13,12 +13,13 @@ from draw import draw_all
 from drawing import events, setup
 from drawing.html import figure_html, write_report
 from drawing.results import read_results
-from refusals import change_json, error_of_paper, flip, one_error
+from refusals import change_json, error_of_paper, flip, one_error, read_run
 from slipfront import read
 from slipfront.figures import balance
 from slipfront.figures.__main__ import main
 from slipfront.files import DataError
-from slipfront.read import read_run, verify_checksums
+from slipfront.opened import drawn_history
+from slipfront.read import verify_checksums
 from synthetic import (
     ENERGY_HEADER,
     OPEN_HEAD,
@@ -171,10 +172,10 @@ def test_a_half_moved_set_is_read_as_a_whole(run):
 def test_an_unfinished_run_is_read_and_marked(pristine, output, capsys, status, words, has_fields):
     interrupt(output / "left", status, "why")
     whole, run = read_run(pristine / "left"), read_run(output / "left")
-    assert (run.status, run.reason, run.name) == (status, "why", "left")
+    assert (run.status, run.place.reason, run.name) == (status, "why", "left")
     for name in ("time_s", "x_m", "slip_rate_m_per_s", "p_Pa"):
-        np.testing.assert_array_equal(getattr(run.history, name), getattr(whole.history, name))
-    assert len(run.fronts) == len(whole.fronts) and (run.fields is not None) == has_fields
+        np.testing.assert_array_equal(run.history[name], whole.history[name])
+    assert len(run.front_list) == len(whole.front_list) and (run.fields is not None) == has_fields
 
     note = f"note: {output / 'left/unfinished'}: {words} us (why): the figures show what there is"
     assert main([str(output / "left")]) == 0
@@ -251,10 +252,10 @@ def test_a_cut_row_of_a_complete_run_is_refused(run):
 def test_a_run_that_has_only_begun(run):
     unfinished = interrupt(run, "running")
     (unfinished / "fronts.csv").unlink()
-    assert read_run(run).fronts == []
+    assert read_run(run).front_list == []
     (unfinished / "interface.h5").write_bytes(OPEN_HEAD)
     with pytest.raises(DataError, match="interface.h5: fewer than two times"):
-        read_run(run)
+        drawn_history(read_run(run))
 
 
 def test_a_run_that_was_killed_while_it_finished_its_files_is_read_by_their_rows(pristine, run):

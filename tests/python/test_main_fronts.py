@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from drawing.criteria import falls, tail
 from slipfront.figures.main_fronts import counted, main_fronts
-from slipfront.read import read_run
+from slipfront.opened import open_run
 from synthetic import FRONTS_HEADER, WAVE_SPEEDS, case_text, make_front, write_csv, write_run
 
 C_L = WAVE_SPEEDS["c_L_m_per_s"]
@@ -24,7 +24,7 @@ def run_of(tmp_path):
         folder = tmp_path / kind
         write_run(folder, kind, 0.6, COLUMNS, 4, 4, 2)
         write_csv(folder / "fronts.csv", FRONTS_HEADER, [row for front in fronts for row in front])
-        return read_run(folder)
+        return open_run(folder)
 
     return make
 
@@ -85,7 +85,7 @@ def test_margin_and_zone_are_those_of_the_case(run_of):
     text = case_text("left", 0.6, COLUMNS).replace("trigger_zone_m = 10e-3", "trigger_zone_m = 15e-3")
     folder = run.place.folder
     (folder / "case.resolved.toml").write_text(text.replace("margin_m = 10e-3\n", "margin_m = 4e-3\n"))
-    run = read_run(folder)
+    run = open_run(folder)
     # The edge margin of the statics changes with it: the zone begins 4 mm outside of 15 mm.
     assert span_mm(run, main_fronts(run)[0])[0] == pytest.approx(11 + 15 + 4, abs=0.7)
 
@@ -123,7 +123,7 @@ def test_a_front_that_runs_when_the_record_ends_has_no_tail(run_of):
     run = run_of("left", [make_front(1, X_M, 1, 0.008, 0.15, 1e-6)])
     (front,) = main_fronts(run)
     assert tail(run, front).any()
-    run.info["fronts"][0]["end"] = "record_end"
+    run.place.info["fronts"][0]["end"] = "record_end"
     assert not tail(run, front).any()
 
 
@@ -144,6 +144,6 @@ def test_falls_are_stretches_of_five_millimetres_where_speed_falls_and_ratio_ris
 
 def test_short_fronts_of_their_own_are_no_main_fronts(tmp_path):
     write_run(tmp_path / "run", "spontaneous", 0.6, COLUMNS, 4, 4, 2)
-    run = read_run(tmp_path / "run")
-    assert [front.id for front in run.fronts] == [1, 2, 3, 4]
+    run = open_run(tmp_path / "run")
+    assert [front.id for front in run.front_list] == [1, 2, 3, 4]
     assert [front.id for front in main_fronts(run)] == [1, 2]

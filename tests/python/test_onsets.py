@@ -156,8 +156,8 @@ def test_intervals_of_few_onsets_are_wide():
 
     three = interval([0.0, 1e-6, 3e-6])
     # Squares of times and places about their means 14/3 us2 and 2 mm2: slope sqrt(7/3) us/mm. About the line
-    # of time on place 1/6 us2 of 1 degree of freedom; Student's t 12.706.
-    low = 1e3 / (np.sqrt(7 / 3) + 12.706 / np.sqrt(12))
+    # of time on place 1/6 us2 of 1 degree of freedom; Student's t is a tangent.
+    low = 1e3 / (np.sqrt(7 / 3) + np.tan(0.475 * np.pi) / np.sqrt(12))
     assert float(three.speed_low_m_per_s[0]) == pytest.approx(low, rel=1e-9)
     assert float(three.speed_high_m_per_s[0]) == np.inf
     two = interval([0.0, 1e-6])  # of a clock that is exact

@@ -21,7 +21,8 @@ from refusals import one_error, one_line
 from slipfront.figures import interface_step
 from slipfront.figures.__main__ import main
 from slipfront.files import DataError, read_json, read_table, read_toml
-from slipfront.read import read_fronts, read_history
+from slipfront.opened import open_run
+from slipfront.read import read_fronts
 from synthetic import ENERGY_HEADER, energy_rows, write_checksums, write_csv, write_run
 from synthetic_study import write_interface_step, write_study, write_verification
 
@@ -78,7 +79,7 @@ def test_what_is_no_file_is_refused_at_once(run, capsys, name, make, says):
 def test_what_is_no_hdf5_file_is_refused_at_once(run, make):
     make(run / "interface.h5")
     with pytest.raises(DataError, match="interface.h5"):
-        read_history(run / "interface.h5", np.array([0.0, 1.0]))
+        _ = open_run(run).history
 
 
 @pytest.mark.parametrize("closed", ["", "energy.csv"])

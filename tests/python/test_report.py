@@ -13,17 +13,18 @@ import h5py
 import numpy as np
 import pytest
 import slipfront
+import xarray as xr
 from package_cases import write_case
 from refusals import change_json, flip, one_line
 from report import KINDS
 from report_pages import data_of, page_of
 from slipfront import __main__ as package
-from slipfront.read import PROBE_FIELDS, Fields, read_balance
+from slipfront.opened import open_run
+from slipfront.read import PROBE_FIELDS, Fields
 from slipfront.report import history, picture_grid, run_data
 from slipfront.report.command import main
 from slipfront.report.numbers import listed, packed, unit
 from slipfront.report.page import MARK, POLICY
-from slipfront.report.run import thin_run
 from slipfront.report.study import STUDIES
 from synthetic import write_checksums, write_output, write_run
 from synthetic_study import write_interface_step, write_open_choices, write_study
@@ -76,7 +77,7 @@ def test_a_page_holds_the_record(run):
 
 def test_a_page_holds_the_fronts_in_full(run):
     fronts = data_of(page_of(run))["runs"][0]["fronts"]
-    read = thin_run(run).fronts
+    read = open_run(run).front_list
     assert [f["id"] for f in fronts] == [f.id for f in read] == [1]
     c_L = 1584.0
     v = np.array([np.nan if v is None else v for v in fronts[0]["v"]])
@@ -404,7 +405,8 @@ def test_thinning_does_not_depend_on_the_rows_read_at_once(monkeypatch, at_once)
     rng = np.random.default_rng(1)
     fields = {name: rng.normal(size=(23, 11)) for name in history.HISTORY_FIELDS}
     time_s, x_m = np.arange(23.0), np.arange(11.0)
-    thin = history.thinned(time_s, x_m, fields, (8, 4))
+    variables = {name: (("time_s", "x_m"), values) for name, values in fields.items()}
+    thin = history.thinned(xr.Dataset(variables, {"time_s": time_s, "x_m": x_m}), (8, 4))
     assert (thin.times_in_block, thin.nodes_in_block) == (3, 3)
     np.testing.assert_array_equal(thin.time_s, [1, 4, 7, 10, 13, 16, 19, 21])
     np.testing.assert_array_equal(thin.x_m, [1, 4, 7, 9])
@@ -447,7 +449,7 @@ def test_pixels_without_material_are_empty():
 
 
 def test_what_the_terms_give_adds_up_to_the_imbalance(run):
-    balance = read_balance(run / "energy.csv")
+    balance = open_run(run).balance
     total = sum(run_data.given_to_the_rest(balance).values())
     stored = balance.terms["strain"] + balance.terms["kinetic"]
     works = sum(v for term, v in balance.terms.items() if term not in ("strain", "kinetic"))

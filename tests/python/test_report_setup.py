@@ -7,17 +7,15 @@ import base64
 import json
 import math
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
 import slipfront
 from common import require_done, run_json, sets
 from package_cases import CASE, program, write_case
-from slipfront.read import Place
+from slipfront.opened import OpenRun, open_run
 from slipfront.report import setup
 from slipfront.report.command import main
-from slipfront.report.run import thin_run
 from slipfront.report.run_data import wave_speeds
 from slipfront.report.sketch import sketch
 from slipfront.units import attributes, engineering, name_of, quantity
@@ -117,6 +115,13 @@ def first_row(part):
 # Stress
 
 
+def with_case(run: OpenRun, case: dict) -> OpenRun:
+    """The run as it would be with another case."""
+    other = OpenRun(run.place)
+    other.__dict__["_case"] = case
+    return other
+
+
 def test_the_prestress_is_told_and_added(pair):
     told = {"recorded": True, "stress_xx_Pa": None, "stress_yy_Pa": -P_PA, "stress_xy_Pa": T_PA}
     assert run_json(pair)["prestress"] == told
@@ -145,7 +150,7 @@ def test_the_prestress_is_told_and_added(pair):
 
 def test_to_changes_of_older_files_the_state_before_is_added(pair, monkeypatch):
     run = slipfront.open(pair)
-    monkeypatch.setattr(Place, "records_prestress", False)
+    monkeypatch.setattr(OpenRun, "records_prestress", False)
     probes, whole = run.probes, run.absolute_stress(run.probes)
     np.testing.assert_array_equal(whole.stress_yy_Pa, probes.stress_yy_Pa - P_PA)
     assert probes.stress_yy_Pa.attrs["long_name"].endswith("change since the start")
@@ -203,7 +208,7 @@ def test_the_report_has_the_change_and_what_is_added(pair):
 
 
 def rows(folder):
-    return dict(setup.rows(thin_run(folder)))
+    return dict(setup.rows(open_run(folder)))
 
 
 def test_the_set_up_is_told_in_words_and_engineering_units(pair):
@@ -272,9 +277,9 @@ def test_forces_are_told_with_their_displacements(tmp_path):
     ],
 )
 def test_the_machine_and_the_path_are_told(pair, tables, says):
-    run = thin_run(pair)
+    run = open_run(pair)
     case = run.case | {name: run.case.get(name, {}) | table for name, table in tables.items()}
-    assert setup.loads(replace(run, case=case)) == setup.loads(run) + says
+    assert setup.loads(with_case(run, case)) == setup.loads(run) + says
 
 
 def test_info_tells_the_machine_and_the_path(tmp_path):
@@ -308,10 +313,10 @@ def test_the_critical_crack_is_that_of_info(pair):
     ],
 )
 def test_starts_are_told(pair, table_name, changes, says):
-    run = thin_run(pair)
+    run = open_run(pair)
     nucleation = {"form": "weakened", "x_m": 0.075, "half_length_m": 7.5e-3, "taper_m": 3.75e-3}
     case = run.case | {table_name: run.case[table_name] | changes, "nucleation": nucleation}
-    assert says in setup.start(replace(run, case=case))
+    assert says in setup.start(with_case(run, case))
 
 
 def test_the_sketch_is_to_scale(pair):
@@ -327,9 +332,9 @@ def test_the_sketch_is_to_scale(pair):
 
 def test_the_sketch_shows_where_it_is_sheared(tilted):
     """By the top edge, or by the pusher at its heights and nothing else."""
-    run = thin_run(tilted)
+    run = open_run(tilted)
     heights = {"pusher_from_m": 20e-3, "pusher_to_m": 60e-3}
-    pushed = replace(run, case=run.case | {"loading": run.case["loading"] | heights})
+    pushed = with_case(run, run.case | {"loading": run.case["loading"] | heights})
     rectangle = r'<rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"'
     (plate, _), (same, _, block) = (
         [[float(number) for number in found] for found in re.findall(rectangle, sketch(of))]
@@ -349,11 +354,11 @@ def test_the_sketch_shows_where_it_is_sheared(tilted):
 
 def test_waves_of_both_bodies_and_of_the_pair_are_drawn(pair, tilted):
     info = run_json(pair)
-    speeds = wave_speeds(thin_run(pair))
+    speeds = wave_speeds(open_run(pair))
     assert list(speeds) == ["c_L", "c_S", "c_R", "c_GR", "c_L of the base", "c_S of the base"]
     assert speeds["c_GR"] == info["base"]["generalised_rayleigh_speed_m_per_s"]
     assert speeds["c_L of the base"] == info["base"]["wave_speeds"]["c_L_m_per_s"]
-    assert list(wave_speeds(thin_run(tilted))) == ["c_L", "c_S", "c_R"]
+    assert list(wave_speeds(open_run(tilted))) == ["c_L", "c_S", "c_R"]
 
 
 def test_what_does_not_vary_is_no_panel(pair, tilted):

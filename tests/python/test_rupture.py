@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from refusals import one_line
 from slipfront.figures.rupture import main, rupture, unit
-from slipfront.read import read_run
+from slipfront.opened import open_run
 from synthetic import write_run
 
 
@@ -19,13 +19,13 @@ def folder(tmp_path_factory):
 
 
 def test_fronts_and_speeds_are_those_of_the_run(folder):
-    run = read_run(folder)
+    run = open_run(folder)
     left, right, *_ = rupture(run).figure.axes
     onsets = {line.get_gid(): line for line in left.lines}
     speeds = {line.get_gid(): line for line in right.lines}
     c_S = run.fact("wave_speeds.c_S_m_per_s")
-    assert run.fronts
-    for front in run.fronts:
+    assert run.front_list
+    for front in run.front_list:
         np.testing.assert_allclose(onsets[f"front:{front.id}"].get_xdata(), 1e3 * front.x_m)
         np.testing.assert_allclose(onsets[f"front:{front.id}"].get_ydata(), 1e6 * front.onset_s)
         np.testing.assert_allclose(speeds[f"speed:{front.id}"].get_ydata(), front.v_tip_m_per_s / c_S)
@@ -42,8 +42,8 @@ def test_units_have_few_digits(largest, expected):
 
 
 def test_nodes_faster_than_the_axis_are_counted(folder):
-    run = read_run(folder)
-    front = run.fronts[0]
+    run = open_run(folder)
+    front = run.front_list[0]
     front.v_tip_m_per_s[5:7] = 2 * run.c_L_m_per_s
     assert rupture(run).figure.axes[1].get_title(loc="right") == "2 nodes above the axis"
 

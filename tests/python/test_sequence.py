@@ -19,9 +19,9 @@ from refusals import flip, replace
 from report_pages import data_of, page_of
 from slipfront.figures.sequence import main
 from slipfront.figures.sequence import sequence as draw
-from slipfront.read import ENERGY_TERMS, read_run
+from slipfront.opened import open_run
+from slipfront.read import ENERGY_TERMS
 from slipfront.report import setup
-from slipfront.report.run import thin_run
 
 N_EVENTS = 4
 # A fraction of a second.
@@ -390,7 +390,7 @@ def test_a_table_without_a_list_that_makes_no_sense_is_refused(copy, old, new, t
 
 
 def test_readers_of_one_run_name_the_events(folder):
-    assert "of a sequence of events; name the folder of one of them" in refused(lambda: read_run(folder))
+    assert "of a sequence of events; name the folder of one of them" in refused(lambda: open_run(folder))
 
 
 # The page
@@ -470,7 +470,7 @@ def test_the_page_shows_slow_slip(stick_slip, tmp_path, monkeypatch):
 
 
 def test_no_shear_is_critical_behind_slow_slip(stick_slip, folder):
-    told = [dict(setup.rows(thin_run(place / "events/0002")))["Loads"] for place in (stick_slip, folder)]
+    told = [dict(setup.rows(open_run(place / "events/0002")))["Loads"] for place in (stick_slip, folder)]
     assert [("shear force" in loads, "of the critical" in loads) for loads in told] == [
         (True, False),
         (False, False),

@@ -9,10 +9,10 @@ import random
 import numpy as np
 import pytest
 from slipfront.files import DataError
-from slipfront.read import Front
+from slipfront.read import Front, longest_each_way
 from slipfront.study.convergence import DAMPING, FACTOR, SIZE, SUBSTEPS, plans_of, points_of
 from slipfront.study.interface_step import Stepping, cheapest, extrapolated
-from slipfront.study.sequence import (
+from slipfront.study.speeds import (
     ALTERNATING,
     CONVERGED,
     FEWEST_STATIONS,
@@ -23,10 +23,11 @@ from slipfront.study.sequence import (
     NOT_CONVERGED,
     TOO_FEW,
     UNKNOWN,
+    Place,
+    Run,
     extrapolate,
     summarise,
 )
-from slipfront.study.speeds import Place, Run, main_fronts
 
 Q = (4.0, 2.0, 1.0)
 NAN = math.nan
@@ -169,7 +170,7 @@ def front(x_m, v, direction=-1):
 
 
 def run(*fronts, left_out_m=()):
-    return Run({}, main_fronts(list(fronts)), list(left_out_m))
+    return Run({}, longest_each_way(list(fronts)), list(left_out_m))
 
 
 def test_a_speed_is_linear_between_the_nodes_of_a_front():
@@ -186,7 +187,7 @@ def test_the_longest_front_of_each_direction_counts():
         front([0.09, 0.04], [2.0, 2.0]),
         front([0.02, 0.04], [3.0, 3.0], 1),
     ]
-    assert main_fronts(fronts) == {-1: fronts[1], 1: fronts[2]}
+    assert longest_each_way(fronts) == {-1: fronts[1], 1: fronts[2]}
 
 
 def test_stations_are_beyond_nucleation_and_what_is_left_out():

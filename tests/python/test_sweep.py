@@ -25,11 +25,10 @@ from slipfront.sweep import maps, notebook, report
 from slipfront.sweep.command import main, share_of
 from slipfront.sweep.definition import Sweep, lines_of, read_sweep
 from slipfront.sweep.folder import as_json, has_value, is_done, place_of, read_definition, thin_out
-from slipfront.sweep.needs import CHEAP, Needs, require_disk, require_memory
 from slipfront.sweep.outcome import QUANTITIES, read_outcome
-from slipfront.sweep.points import folder_name, grid, sample, zipped
+from slipfront.sweep.points import Range, folder_name, grid, range_of, sample, values_of, zipped
+from slipfront.sweep.sweeping import CHEAP, Needs, require_disk, require_memory
 from slipfront.sweep.tables import read_dataset, table_lines
-from slipfront.sweep.values import Range, range_of, values_of
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -24,7 +24,8 @@ from slipfront.figures.main_fronts import (
     main_fronts,
     slow_end,
 )
-from slipfront.read import Front, Run
+from slipfront.opened import OpenRun
+from slipfront.read import Front
 from slipfront.report.run_data import HIGHEST_V, LARGEST_RISE
 
 from drawing import paper_style, sketch
@@ -45,24 +46,24 @@ FIT_COLOUR = "#7b3294"
 Measure = Callable[[Front], np.ndarray]
 
 
-def speed(run: Run) -> Measure:
+def speed(run: OpenRun) -> Measure:
     return lambda front: front.v_tip_m_per_s / run.c_L_m_per_s
 
 
-def tail(run: Run, front: Front) -> np.ndarray:
+def tail(run: OpenRun, front: Front) -> np.ndarray:
     """Whether a main front's nodes count and lie in the last TAIL_M of those that do. [points]
 
     A front that may still run when the record ends has no such end.
     """
     count = counted(run, front)
-    if slow_end(run, front) == len(count) and run.end_of(front) == "record_end":
+    if slow_end(speed(run)(front)) == len(count) and run.told(front, "end") == "record_end":
         return np.full(len(count), False)
     return count & (np.abs(front.x_m - front.x_m[count][-1]) <= TAIL_M * (1 + 1e-9))
 
 
 def draw_fronts(
     ax: Axes,
-    run: Run,
+    run: OpenRun,
     x: Measure,
     y: Measure,
     lines: dict[int, style.Line] | None = None,
@@ -106,7 +107,7 @@ def widened(part: np.ndarray) -> np.ndarray:
     return wider
 
 
-def speed_over_static_ratio(ax: Axes, runs: list[Run]) -> None:
+def speed_over_static_ratio(ax: Axes, runs: list[OpenRun]) -> None:
     for run in runs:
         draw_fronts(ax, run, lambda front: front.static_ratio, speed(run))
     ax.set(xlabel=paper_style.STATIC_LABEL, ylabel=style.V_LABEL)
@@ -134,7 +135,7 @@ def largest(ax: Axes, axis: int) -> float:
     return float(top)
 
 
-def finish(ax: Axes, run: Run) -> str:
+def finish(ax: Axes, run: OpenRun) -> str:
     """Speed axis from zero to the fastest main front but at most HIGHEST_V, with thin lines at wave speeds.
 
     Returns a sentence for the caption where points lie outside the axes, else nothing.
@@ -192,7 +193,7 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
     figure = style.new_figure(style.TEXT_MM, 90)
     ax = figure.subplots()
     (static,) = ax.plot(
-        style.mm(reference.static_x_m),
+        style.mm(reference.x_m),
         reference.static_ratio,
         color="0.6",
         linewidth=1.8,
@@ -228,7 +229,7 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
     )
 
 
-def falls(run: Run, front: Front) -> np.ndarray:
+def falls(run: OpenRun, front: Front) -> np.ndarray:
     """Whether a main front's nodes belong to a stretch where V_tip falls while t_d / p_d rises. [points]"""
     count = counted(run, front)
     step = (np.diff(front.v_tip_m_per_s) < 0) & (np.diff(front.dynamic_ratio) > 0) & count[1:] & count[:-1]
@@ -239,7 +240,7 @@ def falls(run: Run, front: Front) -> np.ndarray:
     return part
 
 
-def underlay_falls(ax: Axes, runs: list[Run]) -> list[Line2D]:
+def underlay_falls(ax: Axes, runs: list[OpenRun]) -> list[Line2D]:
     """A broad light line under stretches where the general trend is reversed; returns its legend entry."""
     look: style.Look = {"color": "#f0e442", "linewidth": 6, "alpha": 0.75, "solid_capstyle": "butt"}
     found = False

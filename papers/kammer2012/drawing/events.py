@@ -13,7 +13,8 @@ from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import drawn_fronts, start
 from slipfront.files import DataError
-from slipfront.read import Front, Run
+from slipfront.opened import OpenRun
+from slipfront.read import Front
 
 from drawing import paper_style
 from drawing.criteria import SELECTION, finish, speed_over_static_ratio
@@ -27,13 +28,13 @@ SPONTANEOUS_AIM_S = 30e-6  # after nucleation ...
 WELL_INSIDE_OVER_WIDTH = 0.05  # ... with both tips at least this far from the edges, if there is such a step
 
 
-def tips(run: Run, time_s: float) -> list[tuple[Front, float]]:
+def tips(run: OpenRun, time_s: float) -> list[tuple[Front, float]]:
     """The drawn fronts that run at an instant, with the positions of their tips."""
     positions = [(front, front.tip_m(time_s)) for front in drawn_fronts(run)]
     return [(front, x) for front, x in positions if x is not None]
 
 
-def choose_step(run: Run) -> int:
+def choose_step(run: OpenRun) -> int:
     """The snapshot that shows the event best; the last one in a run without fronts.
 
     Triggered: the tip of the first front nearest to its aim. Spontaneous: nearest to 30 us after nucleation,
@@ -63,14 +64,14 @@ def choose_step(run: Run) -> int:
     return min(range(len(times)), key=poorness)
 
 
-def draw_missing(ax: Axes, run: Run) -> None:
+def draw_missing(ax: Axes, run: OpenRun) -> None:
     """In place of the snapshot of a run without any."""
     label = f"{paper_style.EVENT_STYLES[run.name].label}:\n{NO_FIELDS}"
     ax.text(0.5, 0.5, label, transform=ax.transAxes, ha="center", va="center", color="0.45", gid="no_fields")
     ax.set(xticks=[], yticks=[])
 
 
-def draw_snapshot(ax: Axes, run: Run) -> None:
+def draw_snapshot(ax: Axes, run: OpenRun) -> None:
     """The snapshot that shows the event best."""
     fields = run.fields
     if fields is None:

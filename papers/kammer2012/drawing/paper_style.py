@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from slipfront.figures.style import Line, Look
-from slipfront.read import Front, Run
+from slipfront.opened import OpenRun
+from slipfront.read import Front
 
 Colour = tuple[float, float, float]
 
@@ -60,7 +61,7 @@ def pale(colour: str) -> Colour:
     return red, green, blue
 
 
-def front_gid(run: Run, front: Front, part: str = "") -> str:
+def front_gid(run: OpenRun, front: Front, part: str = "") -> str:
     """What a front's line is called: the plain name for the nodes that count, a part for others."""
     return f"{run.name}:{front.id}" + (f":{part}" if part else "")
 
@@ -71,7 +72,7 @@ def fill(event: EventStyle, direction: int) -> str:
 
 
 def draw_line(
-    ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, line: Line | None = None
+    ax: Axes, run: OpenRun, front: Front, x: np.ndarray, y: np.ndarray, line: Line | None = None
 ) -> None:
     """A main front as a line with a marker every 10 mm of path; broken where it is undefined."""
     style = EVENT_STYLES[run.name]
@@ -88,7 +89,7 @@ def draw_line(
     )
 
 
-def draw_points(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str = "") -> None:
+def draw_points(ax: Axes, run: OpenRun, front: Front, x: np.ndarray, y: np.ndarray, part: str = "") -> None:
     """A main front as a marker per node; those of a part in a pale colour."""
     style = EVENT_STYLES[run.name]
     own = style.front(front.direction).colour
@@ -107,13 +108,13 @@ def draw_points(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, 
     )
 
 
-def draw_pale(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str) -> None:
+def draw_pale(ax: Axes, run: OpenRun, front: Front, x: np.ndarray, y: np.ndarray, part: str) -> None:
     """What is shown for completeness only: thin, light and behind all else."""
     look: Look = {"color": pale(EVENT_STYLES[run.name].colour), "linewidth": 0.5, "zorder": 1.2}
     ax.plot(x, y, gid=front_gid(run, front, part), **look)
 
 
-def event_handles(runs: list[Run]) -> list[Line2D]:
+def event_handles(runs: list[OpenRun]) -> list[Line2D]:
     """Legend entries of the events' main fronts, with their direction where an event has two."""
     names = {-1: ", against", 1: ", along"}
     return [

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table, read_table
 from slipfront.folder import belongs, located, result_file
-from slipfront.read import Run, read_run
+from slipfront.opened import OpenRun, open_run
 
 from drawing.study import Study, read_studies
 
@@ -60,7 +59,7 @@ def read_main_fronts_fit(row: dict[str, Any]) -> MainFrontsFit | None:
 @dataclass(frozen=True)
 class Results:
     folder: Path
-    runs: dict[str, Run]
+    runs: dict[str, OpenRun]
     scorecard: list[dict[str, Any]]
     analysis: dict[str, Any]
     fit: Fit | None  # of this program's points; None where it found too few
@@ -72,7 +71,7 @@ class Results:
     experiment: tuple[np.ndarray, np.ndarray] | None  # measured t_s / p_s, V_tip / c_L
 
     @property
-    def events(self) -> list[Run]:
+    def events(self) -> list[OpenRun]:
         return [self.runs[name] for name in EVENTS]
 
     def interval_of_fit(self, name: str) -> tuple[float, float] | None:
@@ -164,13 +163,11 @@ def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndar
     raise DataError(f"{file}: no column 'v_over_c_L' or 'v_m_per_s'")
 
 
-def read_results(
-    folder: Path, experiment: Path | None = None, read: Callable[[Path], Run] = read_run
-) -> Results:
-    """A folder of `reproduce.py`; `read` reads one of its runs."""
+def read_results(folder: Path, experiment: Path | None = None) -> Results:
+    """A folder of `reproduce.py`."""
     if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; DIR is of `reproduce.py`, `study` or `run`")
-    runs = {name: read(located(folder / name)) for name in (*EVENTS, HIGH_MU_K)}
+    runs = {name: open_run(located(folder / name)).checked() for name in (*EVENTS, HIGH_MU_K)}
     file = folder / "analysis.json"
     analysis = read_json_table(result_file(file))
     if not isinstance(analysis.get("fit", 0), dict | None):

@@ -12,7 +12,8 @@ from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import start
 from slipfront.files import DataError
-from slipfront.read import Fields, Run
+from slipfront.opened import OpenRun
+from slipfront.read import Fields
 
 from drawing import paper_style
 from drawing.results import HIGH_MU_K, Results
@@ -43,9 +44,9 @@ def on_coarse_grid(ends: np.ndarray, columns: int, every: int) -> np.ndarray:
     return along_row | along_column
 
 
-def static_maximum(run: Run) -> int | None:
+def static_maximum(run: OpenRun) -> int | None:
     """Index of the largest static ratio inside the interface, that is, without the margin at its ends."""
-    x, ratio = run.static_x_m, run.static_ratio
+    x, ratio = run.x_m, run.static_ratio
     inside = (x >= run.fact("statics.inside_from_m")) & (x <= run.fact("statics.inside_to_m"))
     inside &= np.isfinite(ratio)
     return int(np.argmax(np.where(inside, ratio, -np.inf))) if inside.any() else None
@@ -84,7 +85,7 @@ def draw_mesh(ax: Axes, fields: Fields, columns: int, rows: int) -> int:
     return every
 
 
-def draw_loading(ax: Axes, run: Run, width: float, height: float) -> None:
+def draw_loading(ax: Axes, run: OpenRun, width: float, height: float) -> None:
     """Imposed displacement and velocity at the top edge; lengths of the arrows are not to scale."""
     left, right = (run.parameter(f"loading.tilt_{side}_m") for side in ("left", "right"))
     longest = 0.16 * height / max(left, right, 1e-30)
@@ -141,7 +142,7 @@ def draw_outline(ax: Axes, width: float, height: float) -> None:
     ax.text(width / 2, height / 2, NO_FIELDS, ha="center", va="center", color="0.45", gid="no_fields")
 
 
-def draw_plate(ax: Axes, run: Run) -> int | None:
+def draw_plate(ax: Axes, run: OpenRun) -> int | None:
     """Plate, mesh and loading; returns which grid lines are drawn, every k-th, None without a mesh."""
     width, height = 1e3 * run.parameter("plate.width_m"), 1e3 * run.parameter("plate.height_m")
     ax.add_patch(
@@ -184,15 +185,15 @@ def draw_plate(ax: Axes, run: Run) -> int | None:
     return every
 
 
-def draw_static_ratio(ax: Axes, run: Run) -> None:
-    ax.plot(style.mm(run.static_x_m), run.static_ratio, color="black", gid="static")
+def draw_static_ratio(ax: Axes, run: OpenRun) -> None:
+    ax.plot(style.mm(run.x_m), run.static_ratio, color="black", gid="static")
     mu_s = run.parameter("friction.mu_s")
     ax.axhline(mu_s, gid="mu_s", **style.REFERENCE)
     style.name_level(ax, mu_s, r"$\mu_s$")
     peak = static_maximum(run)
     if peak is not None:
         ax.plot(
-            1e3 * run.static_x_m[peak],
+            1e3 * run.x_m[peak],
             run.static_ratio[peak],
             "o",
             markersize=6,
@@ -207,14 +208,14 @@ def draw_static_ratio(ax: Axes, run: Run) -> None:
     ax.set_ylim(0, 1.15 * max(mu_s, np.max(finite, initial=0.0)))
 
 
-def friction_law(run: Run, speed_m_per_s: np.ndarray) -> np.ndarray:
+def friction_law(run: OpenRun, speed_m_per_s: np.ndarray) -> np.ndarray:
     """The velocity-weakening law with the run's parameters."""
     mu_s, mu_k = run.parameter("friction.mu_s"), run.parameter("friction.mu_k")
     drop = mu_s - mu_k
     return mu_k + drop * np.exp(-speed_m_per_s * np.sqrt(drop / run.parameter("friction.alpha_m2_per_s2")))
 
 
-def draw_friction_law(ax: Axes, runs: list[Run]) -> None:
+def draw_friction_law(ax: Axes, runs: list[OpenRun]) -> None:
     slowest = 1.0
     for run in runs:
         drop = run.parameter("friction.mu_s") - run.parameter("friction.mu_k")

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import DRAWN_LENGTH_M, drawn_fronts, start
-from slipfront.read import Run
+from slipfront.opened import OpenRun, drawn_history
 
 from drawing import paper_style
 from drawing.results import Results
@@ -23,7 +23,7 @@ RATE_RANGE_M_PER_S = (0.1, 30.0)
 WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
 
 
-def draw_waves(ax: Axes, run: Run) -> None:
+def draw_waves(ax: Axes, run: OpenRun) -> None:
     """Lines of the wave speeds from the start of the first front, both ways where there is room."""
     began = start(run)
     if began is None:
@@ -70,15 +70,16 @@ def add_legend(figure: Figure, colours: dict[int, str]) -> None:
 
 def space_time(results: Results, name: str) -> Drawing:
     run = results.runs[name]
-    history = run.history
+    history = drawn_history(run)
+    time_s, x_m = (history[name].to_numpy() for name in ("time_s", "x_m"))
     figure = style.new_figure(style.COLUMN_MM, 76)
     ax = figure.subplots()
     # A floor below the range: the logarithm of zero would be drawn as open.
-    rate = np.maximum(np.abs(history.slip_rate_m_per_s), 0.1 * RATE_RANGE_M_PER_S[0])
+    rate = np.maximum(np.abs(history["slip_rate_m_per_s"].to_numpy()), 0.1 * RATE_RANGE_M_PER_S[0])
     image = ax.pcolorfast(
-        style.mm(style.cell_edges(history.x_m)),
-        1e6 * style.cell_edges(history.time_s),
-        np.ma.masked_where(history.p_Pa <= 0, rate),
+        style.mm(style.cell_edges(x_m)),
+        1e6 * style.cell_edges(time_s),
+        np.ma.masked_where(history["p_Pa"].to_numpy() <= 0, rate),
         cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=style.OPEN_COLOUR),
         norm=LogNorm(*RATE_RANGE_M_PER_S),
         gid="rate",
@@ -90,7 +91,7 @@ def space_time(results: Results, name: str) -> Drawing:
         colour = event.front(front.direction).colour
         style.draw_front(ax, style.mm(front.x_m), 1e6 * front.onset_s, colour, f"{name}:{front.id}")
     style.x_axis(ax, run)
-    ax.set(ylabel="$t$ (µs)", ylim=(1e6 * history.time_s[0], 1e6 * history.time_s[-1]))
+    ax.set(ylabel="$t$ (µs)", ylim=(1e6 * time_s[0], 1e6 * time_s[-1]))
     ways = sorted({front.direction for front in fronts})
     add_legend(figure, {way: event.front(way).colour for way in ways})
     figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="max", pad=0.02, aspect=30)

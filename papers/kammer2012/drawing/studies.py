@@ -17,7 +17,7 @@ from matplotlib.transforms import blended_transform_factory
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import main_fronts
-from slipfront.read import Run
+from slipfront.opened import OpenRun
 
 from drawing import paper_style
 from drawing.results import EVENTS, Results
@@ -66,7 +66,7 @@ SPREADS = (
 )
 
 
-def paper_value(study: Study, run: Run) -> int | None:
+def paper_value(study: Study, run: OpenRun) -> int | None:
     """Index of the value that the paper's run has; None where it is not among the study's."""
     value: Any = run.case
     for part in study.parameter.split("."):

@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
-from slipfront.read import BLEW_UP, ENERGY_TERMS, Balance, read_balance, read_place
+from slipfront.opened import open_run
+from slipfront.read import ENERGY_TERMS, Balance
 
 SMALL = 0.02  # a term that never exceeds this share of the largest is drawn below, where it can be seen
 # No two terms share both a hue and a dash for eyes without red or green receptors.
@@ -118,19 +119,17 @@ def draw_balances(every: list[Books]) -> Drawing:
         figure,
         "Energy over time, per unit thickness. Above: change of the stored energies since the start, and the "
         "works done on the plate; what leaves it is negative. Closing gaps: what is lost where the plate "
-        "lands on its base again. Below, on a logarithmic scale and over the "
-        f"largest change above: terms of at most {100 * SMALL:g} % of it, the coupling between the "
-        "sub-cycled layer and the other cells, an error of the time stepping, and the imbalance: change "
-        "less all works, "
-        f"each computed by itself. {'; '.join(closing(books) for books in every)}.",
+        "lands on its base again. Below, on a logarithmic scale and over the largest change above: terms of "
+        f"at most {100 * SMALL:g} % of it, the coupling between the sub-cycled layer and the other cells, an "
+        "error of the time stepping, and the imbalance: change less all works, each computed by itself. "
+        f"{'; '.join(closing(books) for books in every)}.",
     )
 
 
 def balance_of_run(folder: Path) -> tuple[Drawing, list[str]]:
     """One run, of any case, and what to print beside it."""
-    place = read_place(folder)
-    books = read_balance(place.folder / "energy.csv", place.growing, place.status == BLEW_UP)
-    last_s = books.time_s[-1]
+    run = open_run(folder)
+    last_s = run.balance.time_s[-1]
     name = folder.resolve().name
-    drawing = draw_balances([Books(name, plain(name), books)])
-    return drawing.marked(place.mark(last_s)), place.remarks(last_s)
+    drawing = draw_balances([Books(name, plain(name), run.balance)])
+    return drawing.marked(run.place.mark(last_s)), run.place.remarks(last_s)

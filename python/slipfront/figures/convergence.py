@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
@@ -20,14 +21,8 @@ from slipfront.files import DataError, is_number, number, read_json_table, read_
 from slipfront.folder import result_file
 
 NUMBERS = (
-    "x_m",
-    "direction",
-    "value",
-    "v_tip_m_per_s",
-    "extrapolated_m_per_s",
-    "error_m_per_s",
-    "order",
-)
+    "x_m", "direction", "value", "v_tip_m_per_s", "extrapolated_m_per_s", "error_m_per_s", "order",
+)  # fmt: skip
 NAMES = {
     "plate.element_size_m": "element size",
     "time.interface_substeps": "sub-steps",
@@ -100,35 +95,30 @@ class Study:
         return decided or [d for d in WAYS if any(s.stations[d].x_m.size for s in self.sequences)]
 
 
-def read_rows(file: Path) -> list[dict[str, Any]]:
+def read_rows(file: Path) -> pd.DataFrame:
     table = read_table(result_file(file))
     try:
-        numbers = {key: table.numbers(key) for key in NUMBERS}
-        parameters = table.texts("parameter")
+        rows = pd.DataFrame({key: table.numbers(key) for key in NUMBERS})
         for key in ("x_m", "direction", "value"):
-            if np.isnan(numbers[key]).any():
+            if rows[key].isna().any():
                 raise DataError(f"{file}: empty cell in column '{key}'")
+        return rows.assign(parameter=table.texts("parameter"))
     except DataError as error:
         raise DataError(f"{error}; not a table of `slipfront study convergence`") from None
-    columns: dict[str, Any] = {"parameter": parameters, **numbers}
-    return [{key: values[i] for key, values in columns.items()} for i in range(len(parameters))]
 
 
-def read_stations(rows: list[dict[str, Any]], values: np.ndarray, c_L: float) -> Stations:
+def read_stations(rows: pd.DataFrame, values: np.ndarray, c_L: float) -> Stations:
     """The rows of one sequence and direction."""
-    x_m = np.array(sorted({r["x_m"] for r in rows}))
-    shape = (len(values), len(x_m))
-    v, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    extrapolated, order = np.full(len(x_m), np.nan), np.full(len(x_m), np.nan)
-    for r in rows:
-        k = int(np.argmin(np.abs(values - r["value"])))
-        i = int(np.searchsorted(x_m, r["x_m"]))
-        v[k, i], error[k, i] = r["v_tip_m_per_s"] / c_L, r["error_m_per_s"] / c_L
-        extrapolated[i], order[i] = r["extrapolated_m_per_s"] / c_L, r["order"]
+    x_m, at = np.unique(rows["x_m"], return_inverse=True)
+    of_value = np.abs(values[:, None] - rows["value"].to_numpy()).argmin(axis=0)
+    v, error = (np.full((len(values), len(x_m)), np.nan) for _ in range(2))
+    v[of_value, at], error[of_value, at] = rows["v_tip_m_per_s"] / c_L, rows["error_m_per_s"] / c_L
+    extrapolated, order = (np.full(len(x_m), np.nan) for _ in range(2))
+    extrapolated[at], order[at] = rows["extrapolated_m_per_s"] / c_L, rows["order"]
     return Stations(x_m, v, error, extrapolated, order)
 
 
-def read_sequence(entry: dict[str, Any], rows: list[dict[str, Any]], c_L: float) -> Sequence:
+def read_sequence(entry: dict[str, Any], rows: pd.DataFrame, c_L: float) -> Sequence:
     values = np.array(entry["values"], dtype=float)
     if values.ndim != 1 or values.size == 0 or not np.isfinite(values).all():
         raise ValueError("'values' is not a list of numbers")
@@ -140,8 +130,8 @@ def read_sequence(entry: dict[str, Any], rows: list[dict[str, Any]], c_L: float)
         if not all(value is None or is_number(value) for value in (error, order)):
             raise TypeError("an error or an order is not a number")
         summaries[direction] = Summary(str(s["verdict"]), error, order, s["n_stations"])
-        near = [r for r in rows if r["parameter"] == entry["parameter"] and r["direction"] == direction]
-        stations[direction] = read_stations(near, values, c_L)
+        near = (rows["parameter"] == entry["parameter"]) & (rows["direction"] == direction)
+        stations[direction] = read_stations(rows[near], values, c_L)
     return Sequence(entry["parameter"], values, own, summaries, stations)
 
 

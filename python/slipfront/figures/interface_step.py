@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
+
+import pandas as pd
 
 from slipfront.figures.drawing import Drawing, command_to_draw, plain, write_results
 from slipfront.figures.style import COLUMN_MM, V_NAME, new_figure
@@ -18,19 +19,15 @@ from slipfront.folder import result_file
 TABLE = "interface_step.csv"
 SUMMARY = "interface_step.json"
 NUMBERS = ("interface_rows", "cost_over_plain", "median_error", "p90_error")
-COLOURS = {1: "#88ccee", 2: "#0072b2", 4: "#d55e00", 8: "#117733"}
+COLOURS = {0: "0.2", 1: "#88ccee", 2: "#0072b2", 4: "#d55e00", 8: "#117733"}
 
 
-def read_rows(file: Path) -> list[dict[str, Any]]:
+def read_rows(file: Path) -> pd.DataFrame:
     table = read_table(result_file(file))
     try:
-        numbers = {key: table.numbers(key) for key in NUMBERS}
-        kinds = table.texts("kind")
+        return pd.DataFrame({key: table.numbers(key) for key in NUMBERS} | {"kind": table.texts("kind")})
     except DataError as error:
         raise DataError(f"{error}; not a table of `slipfront study interface-step`") from None
-    return [
-        {"kind": kind, **{key: values[i] for key, values in numbers.items()}} for i, kind in enumerate(kinds)
-    ]
 
 
 def draw(folders: list[Path]) -> Drawing:
@@ -41,22 +38,15 @@ def draw(folders: list[Path]) -> Drawing:
         file = result_file(folder / SUMMARY)
         summary = read_json_table(file)
         ax = figure.add_subplot(1, len(folders), k + 1)
-        groups = [("plain", 0)] + sorted(
-            {("layer", int(r["interface_rows"])) for r in rows if r["kind"] == "layer"}
-        )
-        for kind, n_rows in groups:
-            points = [
-                r for r in rows if r["kind"] == kind and (kind == "plain" or r["interface_rows"] == n_rows)
-            ]
-            cost = [r["cost_over_plain"] for r in points]
-            colour = "0.2" if kind == "plain" else COLOURS.get(n_rows, "0.6")
+        without, layers = (rows[rows["kind"] == kind] for kind in ("plain", "layer"))
+        groups = {0: without} | {int(n): points for n, points in layers.groupby("interface_rows")}
+        for n_rows, points in groups.items():
+            cost, colour = points["cost_over_plain"], COLOURS.get(n_rows, "0.6")
             label = (
-                "plain, smaller steps"
-                if kind == "plain"
-                else f"{n_rows} row{'s' if n_rows > 1 else ''} sub-cycled"
+                f"{n_rows} row{'s' if n_rows > 1 else ''} sub-cycled" if n_rows else "plain, smaller steps"
             )
-            ax.plot(cost, [100 * r["p90_error"] for r in points], "-o", color=colour, label=label)
-            ax.plot(cost, [100 * r["median_error"] for r in points], ".", color=colour, markersize=2)
+            ax.plot(cost, 100 * points["p90_error"], "-o", color=colour, label=label)
+            ax.plot(cost, 100 * points["median_error"], ".", color=colour, markersize=2)
         tolerance = number(file, summary, "tolerance")
         ax.axhline(100 * tolerance, color="0.5", linewidth=0.5, label=f"tolerance, {100 * tolerance:g} %")
         ax.set(

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipfront.read import Front, Run
+from slipfront.opened import OpenRun
+from slipfront.read import Front, longest_each_way
 
 # Shorter fronts, mostly secondary ones late in a record, would hide the events' own in the plots of V_tip.
 DRAWN_LENGTH_M = 10e-3
@@ -13,18 +14,18 @@ NUCLEATION_M = 5e-3  # the speed diverges where a front nucleates
 SLOW_OVER_C_L = 0.1  # a front is over where its speed stays below this
 
 
-def drawn_fronts(run: Run) -> list[Front]:
+def drawn_fronts(run: OpenRun) -> list[Front]:
     """The fronts long enough to be drawn, in the order of their start."""
-    return sorted((f for f in run.fronts if f.length_m >= DRAWN_LENGTH_M), key=lambda f: f.onset_s[0])
+    return sorted((f for f in run.front_list if f.length_m >= DRAWN_LENGTH_M), key=lambda f: f.onset_s[0])
 
 
-def start(run: Run) -> tuple[float, float] | None:
+def start(run: OpenRun) -> tuple[float, float] | None:
     """Where (m) and when (s) the first drawn front starts; None in a run without one."""
     fronts = drawn_fronts(run)
     return (float(fronts[0].x_m[0]), float(fronts[0].onset_s[0])) if fronts else None
 
 
-def away_from_trigger(run: Run, x_m: np.ndarray) -> np.ndarray:
+def away_from_trigger(run: OpenRun, x_m: np.ndarray) -> np.ndarray:
     """Whether points lie outside the trigger zone or patch and its margin; everywhere in other events."""
     if run.kind == "nucleation":
         reach_m = run.parameter("nucleation.half_length_m") + run.parameter("nucleation.taper_m")
@@ -40,7 +41,7 @@ def away_from_trigger(run: Run, x_m: np.ndarray) -> np.ndarray:
     return x_m <= run.fact("statics.inside_to_m") + edge_m - omitted_m
 
 
-def beyond_origin(run: Run, x_m: np.ndarray) -> np.ndarray:
+def beyond_origin(run: OpenRun, x_m: np.ndarray) -> np.ndarray:
     """Whether points lie outside the trigger zone and its margin, or off a spontaneous nucleation."""
     began = start(run)
     if run.kind in ("left", "right", "nucleation") or began is None:
@@ -48,24 +49,22 @@ def beyond_origin(run: Run, x_m: np.ndarray) -> np.ndarray:
     return np.abs(x_m - began[0]) >= NUCLEATION_M
 
 
-def slow_end(run: Run, front: Front) -> int:
-    """Index of the first node from which V_tip stays slow to the end; undefined speeds decide nothing."""
-    limit = SLOW_OVER_C_L * run.c_L_m_per_s
-    fast, slow = (
-        np.flatnonzero(part) for part in (front.v_tip_m_per_s >= limit, front.v_tip_m_per_s < limit)
-    )
-    last_fast = fast[-1] if len(fast) > 0 else -1
-    after = slow[slow > last_fast]
-    return int(after[0]) if len(after) > 0 else len(front.x_m)
+def slow_end(v_over_c_L: np.ndarray) -> int:
+    """Index of the first node from which V_tip stays slow to the end; undefined speeds decide nothing. A slow
+    stretch behind which the front is fast again is part of it."""
+    fast = np.flatnonzero(v_over_c_L >= SLOW_OVER_C_L)
+    behind = fast[-1] + 1 if len(fast) > 0 else 0
+    slow = np.flatnonzero(v_over_c_L[behind:] < SLOW_OVER_C_L)
+    return int(behind + slow[0]) if len(slow) > 0 else len(v_over_c_L)
 
 
-def counted(run: Run, front: Front) -> np.ndarray:
+def counted(run: OpenRun, front: Front) -> np.ndarray:
     """Whether nodes of a front count: beyond the origin, to the last before V_tip stays slow. [points]"""
-    return beyond_origin(run, front.x_m) & (np.arange(len(front.x_m)) < slow_end(run, front))
+    end = slow_end(front.v_tip_m_per_s / run.c_L_m_per_s)
+    return beyond_origin(run, front.x_m) & (np.arange(len(front.x_m)) < end)
 
 
-def main_fronts(run: Run) -> list[Front]:
+def main_fronts(run: OpenRun) -> list[Front]:
     """The longest front in each direction that starts at the event's origin, where any of its nodes count."""
-    own = [f for f in run.fronts if not beyond_origin(run, f.x_m[:1])[0] and counted(run, f).any()]
-    each_way = [[f for f in own if f.direction == way] for way in (-1, 1)]
-    return [max(fronts, key=lambda f: f.length_m) for fronts in each_way if fronts]
+    own = [f for f in run.front_list if not beyond_origin(run, f.x_m[:1])[0] and counted(run, f).any()]
+    return [front for _, front in sorted(longest_each_way(own).items())]

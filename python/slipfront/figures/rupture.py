@@ -21,7 +21,7 @@ from matplotlib.patches import Patch
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, command_to_draw, write_results
-from slipfront.read import Run, read_run
+from slipfront.opened import OpenRun, drawn_history, open_run
 
 DECADES = 3.0  # of slip rate below the highest that are told apart
 WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": "--", "c_R": ":"}
@@ -35,39 +35,40 @@ def unit(largest: float, name: str) -> tuple[float, str]:
     return 1e9, "n" + name
 
 
-def draw_slip_rate(ax: Axes, run: Run) -> AxesImage | QuadMesh:
-    history = run.history
-    rate = np.abs(history.slip_rate_m_per_s)
+def draw_slip_rate(ax: Axes, run: OpenRun) -> AxesImage | QuadMesh:
+    history = drawn_history(run)
+    time_s, x_m = (history[name].to_numpy() for name in ("time_s", "x_m"))
+    rate = np.abs(history["slip_rate_m_per_s"].to_numpy())
     highest = float(np.max(rate)) or 1.0
     lowest = highest / 10**DECADES
     to_x, x_unit = unit(run.parameter("plate.width_m"), "m")
-    to_t, t_unit = unit(float(history.time_s[-1]), "s")
+    to_t, t_unit = unit(float(time_s[-1]), "s")
     image = ax.pcolorfast(
-        to_x * style.cell_edges(history.x_m),
-        to_t * style.cell_edges(history.time_s),
+        to_x * style.cell_edges(x_m),
+        to_t * style.cell_edges(time_s),
         # A floor below the range: the logarithm of zero would be drawn as open.
-        np.ma.masked_where(history.p_Pa <= 0, np.maximum(rate, 0.1 * lowest)),
+        np.ma.masked_where(history["p_Pa"].to_numpy() <= 0, np.maximum(rate, 0.1 * lowest)),
         cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=style.OPEN_COLOUR),
         norm=LogNorm(lowest, highest),
         gid="rate",
     )
-    for front in run.fronts:
+    for front in run.front_list:
         colour = style.DIRECTION_COLOURS[front.direction]
         style.draw_front(ax, to_x * front.x_m, to_t * front.onset_s, colour, f"front:{front.id}")
     ax.set(
         xlabel=f"$x$ ({x_unit})",
         ylabel=f"$t$ ({t_unit})",
         xlim=(0, to_x * run.parameter("plate.width_m")),
-        ylim=(0, to_t * history.time_s[-1]),
+        ylim=(0, to_t * time_s[-1]),
     )
     return image
 
 
-def draw_speeds(ax: Axes, run: Run) -> None:
+def draw_speeds(ax: Axes, run: OpenRun) -> None:
     """Front speeds over c_S, with the plate's wave speeds; faster nodes than the axis has are counted."""
     c_S = run.fact("wave_speeds.c_S_m_per_s")
     to_x, x_unit = unit(run.parameter("plate.width_m"), "m")
-    for front in run.fronts:
+    for front in run.front_list:
         colour = style.DIRECTION_COLOURS[front.direction]
         ax.plot(to_x * front.x_m, front.v_tip_m_per_s / c_S, color=colour, gid=f"speed:{front.id}")
     style.wave_speed_lines(ax, run, c_S, WAVES)
@@ -78,21 +79,21 @@ def draw_speeds(ax: Axes, run: Run) -> None:
         xlim=(0, to_x * run.parameter("plate.width_m")),
         ylim=(0, highest),
     )
-    above = sum(int(np.sum(front.v_tip_m_per_s / c_S > highest)) for front in run.fronts)
+    above = sum(int(np.sum(front.v_tip_m_per_s / c_S > highest)) for front in run.front_list)
     if above:
         ax.set_title(f"{above} {'node' if above == 1 else 'nodes'} above the axis", loc="right", pad=3)
 
 
-def handles_of(run: Run) -> list[Artist]:
+def handles_of(run: OpenRun) -> list[Artist]:
     """Legend entries of what is in both panels."""
-    colours = {way: style.DIRECTION_COLOURS[way] for way in sorted({f.direction for f in run.fronts})}
+    colours = {way: style.DIRECTION_COLOURS[way] for way in sorted({f.direction for f in run.front_list})}
     names = {way: f"fronts {words}" for way, words in style.DIRECTION_WORDS.items()}
     fronts = [Line2D([], [], color=colours[way], linewidth=1.2, label=names[way]) for way in colours]
-    has_open = bool((run.history.p_Pa <= 0).any())
+    has_open = bool((run.history["p_Pa"] <= 0).any())
     return [*fronts, *([Patch(facecolor=style.OPEN_COLOUR, label="contact open")] if has_open else [])]
 
 
-def rupture(run: Run) -> Drawing:
+def rupture(run: OpenRun) -> Drawing:
     figure = style.new_figure(style.PAGE_MM, 77)
     left, right = figure.subplots(1, 2)
     bar: style.Look = {"label": "slip rate $|v|$ (m/s)", "extend": "min", "pad": 0.02, "aspect": 30}
@@ -110,7 +111,7 @@ def rupture(run: Run) -> Drawing:
 
 
 def draw(folder: Path) -> Drawing:
-    run = read_run(folder)
+    run = open_run(folder)
     return rupture(run).marked(run.mark)
 
 

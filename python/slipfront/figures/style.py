@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from slipfront.read import Run
+from slipfront.opened import OpenRun
 
 COLUMN_MM = 84.0
 TEXT_MM = 120.0
@@ -78,7 +78,7 @@ def new_figure(width_mm: float, height_mm: float, constrained: bool = True) -> F
     return Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained" if constrained else None)
 
 
-def x_axis(ax: Axes, run: Run) -> None:
+def x_axis(ax: Axes, run: OpenRun) -> None:
     """The axis along the interface, in mm over the width of the plate."""
     ax.set(xlabel="$x$ (mm)", xlim=(0, 1e3 * run.parameter("plate.width_m")))
     ax.locator_params(axis="x", nbins=4)
@@ -120,7 +120,7 @@ def name_level(ax: Axes, level: float, label: str, below: bool = False) -> None:
     )
 
 
-def wave_speed_lines(ax: Axes, run: Run, unit_m_per_s: float, lines: dict[str, Line]) -> None:
+def wave_speed_lines(ax: Axes, run: OpenRun, unit_m_per_s: float, lines: dict[str, Line]) -> None:
     """Wave speeds of the plate, by their names, as thin horizontal lines, named at the right end."""
     for wave, line in lines.items():
         level = run.fact(f"wave_speeds.{wave}_m_per_s") / unit_m_per_s

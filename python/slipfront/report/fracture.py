@@ -9,30 +9,24 @@ import numpy as np
 
 import slipfront
 from slipfront.errors import Error
-from slipfront.read import BLEW_UP, Run, read_fracture
+from slipfront.opened import OpenRun
+from slipfront.read import BLEW_UP
+from slipfront.report.history import ThinHistory
 from slipfront.report.numbers import Unit, listed
 from slipfront.report.page import plot, section, words
 from slipfront.report.run_data import units_of
 
 ENERGIES = ("breakdown_work_J_per_m2", "G_slip_J_per_m2")
 LOG_FROM = 10.0  # the largest energy over the median fracture energy
-Fracture = dict[int, dict[str, np.ndarray]]
 
 
-def fracture_of(run: Run) -> Fracture | None:
-    """None, too, of a run whose tables may end anywhere."""
-    if run.place.growing:
-        return None
-    return read_fracture(run.place.folder / "fracture.csv", run.fronts, run.status == BLEW_UP)
-
-
-def prediction(run: Run, x_unit: Unit) -> tuple[dict[str, Any] | None, str]:
+def prediction(run: OpenRun, x_unit: Unit) -> tuple[dict[str, Any] | None, str]:
     """Curves of the equation of motion with the run's own friction, a gap between directions; and what to say
     of them."""
     if run.status == BLEW_UP:
         return None, "No prediction: the run blew up."
     try:
-        found = slipfront.predict_fronts(slipfront.OpenRun(run.place))
+        found = slipfront.predict_fronts(run)
     except (Error, ImportError) as error:
         return None, f"No prediction: {words(error)}."
     told = found.attrs
@@ -70,11 +64,11 @@ def prediction(run: Run, x_unit: Unit) -> tuple[dict[str, Any] | None, str]:
     return curves, " ".join(said)
 
 
-def fracture_data(run: Run, fracture: Fracture | None, fronts: list[dict[str, Any]]) -> dict[str, Any] | None:
+def fracture_data(run: OpenRun, history: ThinHistory, fronts: list[dict[str, Any]]) -> dict[str, Any] | None:
     """Adds energies to the data of the fronts; None where no front's breakdown came to its end."""
-    if fracture is None or not fronts:
+    if run.breakdown is None or not fronts:
         return None
-    of_drawn = [fracture[front["id"]] for front in fronts]
+    of_drawn = [run.breakdown[front["id"]] for front in fronts]
     energy, by_slip = (np.concatenate([of[name] for of in of_drawn]) for name in ENERGIES)
     energy = energy[np.isfinite(energy) & (energy > 0)]
     by_slip = by_slip[np.isfinite(by_slip)]
@@ -82,7 +76,7 @@ def fracture_data(run: Run, fracture: Fracture | None, fronts: list[dict[str, An
         return None
     for front, of in zip(fronts, of_drawn, strict=True):
         front["gamma"], front["g_slip"] = (listed(of[name]) for name in ENERGIES)
-    curves, said = prediction(run, units_of(run)["x"])
+    curves, said = prediction(run, units_of(history)["x"])
     at_rest = [g for g in curves["at_rest"] if g is not None] if curves else []
     typical = float(np.median(energy))
     largest = float(max(*energy, *by_slip, *at_rest))

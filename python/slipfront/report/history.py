@@ -3,36 +3,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from slipfront.files import dataset, open_hdf5
-from slipfront.folder import result_file
-from slipfront.read import (
-    HISTORY_FIELDS,
-    History,
-    HistoryReader,
-    checked_history,
-    is_open,
-    n_finite,
-    open_history,
-    require,
-    require_same_nodes,
-)
+from slipfront.read import HISTORY_FIELDS
 
 ROWS_AT_ONCE = 2**22  # numbers of a field that are in memory while it is read
 
 
 @dataclass(frozen=True)
-class ThinHistory(History):
+class ThinHistory:
     """A number for each block of times and nodes: the largest slip rate, else what is amid it."""
 
+    time_s: np.ndarray  # [times]
+    x_m: np.ndarray  # [nodes]
     slip_m: np.ndarray  # [times, nodes]
+    slip_rate_m_per_s: np.ndarray  # [times, nodes]
     t_Pa: np.ndarray  # [times, nodes]
+    p_Pa: np.ndarray  # [times, nodes]
     n_times: int  # of the record
     n_nodes: int
     times_in_block: int
@@ -59,7 +50,7 @@ def largest_of_blocks(values: np.ndarray, n_rows: int, n_columns: int) -> np.nda
 
 
 def thin_field(field: Any, name: str, n_rows: int, n_columns: int) -> np.ndarray:
-    """A field of the record, some of its rows at a time; `field` is an array or a data set."""
+    """A field of the record, some of its rows at a time; `field` may lie in a file."""
     n_times, n_nodes = field.shape
     at_once = max(1, ROWS_AT_ONCE // (n_nodes * n_rows)) * n_rows
     parts = []
@@ -72,14 +63,13 @@ def thin_field(field: Any, name: str, n_rows: int, n_columns: int) -> np.ndarray
     return np.concatenate(parts)
 
 
-def thinned(
-    time_s: np.ndarray, x_m: np.ndarray, fields: Mapping[str, Any], most: tuple[int, int]
-) -> ThinHistory:
-    """At most so many times and nodes of the record."""
+def thinned(history: xr.Dataset, most: tuple[int, int]) -> ThinHistory:
+    """At most so many times and nodes of a record."""
+    time_s, x_m = (history[name].to_numpy() for name in ("time_s", "x_m"))
     n_rows, n_columns = (
         max(1, -(-n // limit)) for n, limit in zip((len(time_s), len(x_m)), most, strict=True)
     )
-    thin = {name: thin_field(fields[name], name, n_rows, n_columns) for name in HISTORY_FIELDS}
+    thin = {name: thin_field(history[name], name, n_rows, n_columns) for name in HISTORY_FIELDS}
     return ThinHistory(
         time_s=time_s[middles(len(time_s), n_rows)],
         x_m=x_m[middles(len(x_m), n_columns)],
@@ -89,37 +79,3 @@ def thinned(
         nodes_in_block=n_columns,
         **thin,
     )
-
-
-def checked(file: Path, thin: ThinHistory, blew_up: bool) -> ThinHistory:
-    """The history, of a run that blew up as far as it is finite."""
-    fields = {name: getattr(thin, name) for name in HISTORY_FIELDS}
-    n = n_finite(thin.time_s, *fields.values()) if blew_up else len(thin.time_s)
-    cut = {name: values[:n] for name, values in fields.items()}
-    for name in ("slip_m", "t_Pa"):
-        require(np.isfinite(cut[name]), file, f"a value of {name} is not finite")
-    checked_history(file, History(thin.time_s[:n], thin.x_m, cut["slip_rate_m_per_s"], cut["p_Pa"]), False)
-    sizes = {name: getattr(thin, name) for name in ("n_times", "n_nodes", "times_in_block", "nodes_in_block")}
-    return ThinHistory(time_s=thin.time_s[:n], x_m=thin.x_m, **cut, **sizes)
-
-
-def thin_history(most: tuple[int, int]) -> HistoryReader:
-    """A reader of histories with at most so many times and nodes, for read_run."""
-
-    def read(file: Path, x_m: np.ndarray, blew_up: bool) -> ThinHistory:
-        file = result_file(file)
-        if is_open(file):
-            time_s, fields = open_history(file, x_m)
-            require(len(time_s) >= 2, file, "fewer than two times")
-            return checked(file, thinned(time_s, x_m, fields, most), blew_up)
-        with open_hdf5(file) as hdf5:
-            time_s, nodes_m = (dataset(hdf5, name, 1)[()] for name in ("time_s", "x_m"))
-            require_same_nodes(file, nodes_m, x_m)
-            shape = (len(time_s), len(x_m))
-            require(min(shape) >= 2, file, "fewer than two times or nodes")
-            sets = {name: dataset(hdf5, name, 2) for name in HISTORY_FIELDS}
-            for name, field in sets.items():
-                require(field.shape == shape, file, f"{name} is {field.shape}, not {shape}")
-            return checked(file, thinned(time_s, x_m, sets, most), blew_up)
-
-    return read

@@ -4,21 +4,14 @@
 from __future__ import annotations
 
 import base64
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from slipfront.units import Unit as Unit
+
 DIGITS = 5  # of a number that is written out: more than a screen shows
-
-
-@dataclass(frozen=True)
-class Unit:
-    """What a page shows a quantity in; `factor` is from SI to it."""
-
-    name: str
-    factor: float
 
 
 #: For each quantity, units from small to large, with the largest number that each is used for, in SI.

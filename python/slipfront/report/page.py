@@ -19,17 +19,9 @@ from slipfront.files import one_line
 MARK = "<!DOCTYPE html><!-- slipfront report -->"
 #: In the order in which they use each other.
 SCRIPTS = (
-    "data.js",
-    "space_time.js",
-    "profiles.js",
-    "criteria.js",
-    "fracture.js",
-    "energy.js",
-    "snapshots.js",
-    "probes.js",
-    "sequence.js",
-    "page.js",
-)
+    "data.js", "space_time.js", "profiles.js", "criteria.js", "fracture.js", "energy.js", "snapshots.js",
+    "probes.js", "sequence.js", "page.js",
+)  # fmt: skip
 #: The browser itself refuses whatever would come from a network.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
 PLOTLY_MB = 4.8

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from slipfront.folder import belongs
-from slipfront.read import BLEW_UP, Place, Probes, n_finite, read_probes, require, require_ascending
+from slipfront.opened import OpenRun
+from slipfront.read import BLEW_UP, PROBE_FIELDS, n_finite, require, require_ascending
 from slipfront.report.numbers import listed, packed, unit
 from slipfront.report.page import plot, section
 from slipfront.units import quantity
@@ -38,25 +38,24 @@ CHOICES = {
 }
 
 
-def probes_of(place: Place) -> Probes | None:
+def probes_of(run: OpenRun) -> xr.Dataset | None:
     """The records of a run, of one that blew up as far as they are finite; None of a run without any."""
-    file = place.folder / "probes.h5"
-    if place.growing or not belongs(file):
+    file, probes = run.folder / "probes.h5", None if run.place.growing else run.probes
+    if probes is None:
         return None
-    probes = read_probes(file)
-    require_ascending(file, "time_s", probes.time_s)
-    if place.status == BLEW_UP:
-        n = n_finite(*probes.fields.values())
-        cut = {name: values[:n] for name, values in probes.fields.items()}
-        probes = replace(probes, time_s=probes.time_s[:n], fields=cut)
-    if place.records_prestress:  # the page shows the change, and adds what is known of the state before
-        changed = {
-            n: v - v[:1] if n.startswith(("strain", "stress")) else v for n, v in probes.fields.items()
-        }
-        probes = replace(probes, fields=changed)
-    for name, values in probes.fields.items():
-        require(np.isfinite(values), file, f"a value of {name} is not finite")
-    return probes if len(probes.time_s) > 0 and probes.names else None
+    require_ascending(file, "time_s", probes["time_s"].to_numpy())
+    if run.status == BLEW_UP:
+        probes = probes.isel(time_s=slice(n_finite(*(probes[name].to_numpy() for name in PROBE_FIELDS))))
+    if min(probes.sizes["time_s"], probes.sizes["probe"]) == 0:
+        return None
+    if run.records_prestress:  # the page shows the change, and adds what is known of the state before
+        states = [name for name in PROBE_FIELDS if name.startswith(("strain", "stress"))]
+        probes = probes.assign(
+            {name: probes[name] - probes[name].isel(time_s=0, drop=True) for name in states}
+        )
+    for name in PROBE_FIELDS:
+        require(np.isfinite(probes[name]), file, f"a value of {name} is not finite")
+    return probes
 
 
 def step_of(n: int, most: int) -> int:
@@ -77,15 +76,15 @@ def scaled(value: float | None, factor: float) -> float | None:
 
 
 def probe_data(
-    probes: Probes, time_factor: float, length_factor: float, before: dict[str, float] | None
+    probes: xr.Dataset, time_factor: float, length_factor: float, before: dict[str, float] | None
 ) -> dict[str, Any]:
     """The records as values of JSON, in units that suit them; components that are zero throughout are only
     named."""
-    times = slice(None, None, step_of(len(probes.time_s), MOST_TIMES))
-    every = slice(0, MOST_PROBES)
+    shown_times = slice(None, None, step_of(probes.sizes["time_s"], MOST_TIMES))
+    drawn = probes.isel(time_s=shown_times, probe=slice(0, MOST_PROBES))
     choices = []
     for name, (measure, fields) in CHOICES.items():
-        values = {field: probes.fields[field][times, every] for field in fields}
+        values = {field: drawn[field].to_numpy() for field in fields}
         added = {field: before_start(field, before) for field in fields}
         shown = unit(measure, np.concatenate([values[field] + (added[field] or 0) for field in fields]))
         zero = [label for field, label in fields.items() if not values[field].any() and not added[field]]
@@ -107,22 +106,23 @@ def probe_data(
         )
     return {
         "are_changes": before is not None,
-        "names": list(probes.names[every]),
-        "x": listed(probes.x_m[every], length_factor),
-        "y": listed(probes.y_m[every], length_factor),
-        "time": listed(probes.time_s[times], time_factor),
+        "names": drawn["probe"].to_numpy().tolist(),
+        "x": listed(drawn["x_m"], length_factor),
+        "y": listed(drawn["y_m"], length_factor),
+        "time": listed(drawn["time_s"], time_factor),
         "choices": choices,
     }
 
 
-def left_out(probes: Probes) -> str:
+def left_out(probes: xr.Dataset) -> str:
     """What of the records the page does not have."""
-    step = step_of(len(probes.time_s), MOST_TIMES)
+    n_times, n_probes = probes.sizes["time_s"], probes.sizes["probe"]
+    step = step_of(n_times, MOST_TIMES)
     skipped = []
-    if len(probes.names) > MOST_PROBES:
-        skipped.append(f"the first {MOST_PROBES} of {len(probes.names)} probes")
+    if n_probes > MOST_PROBES:
+        skipped.append(f"the first {MOST_PROBES} of {n_probes} probes")
     if step > 1:
-        skipped.append(f"one in {step} of {len(probes.time_s)} times")
+        skipped.append(f"one in {step} of {n_times} times")
     return f" The page holds {' and '.join(skipped)}; all are in probes.h5." if skipped else ""
 
 
@@ -131,27 +131,24 @@ def what_is_recorded(before: dict[str, float] | None) -> str:
     if before is None:
         return (
             "The records hold the whole strain and stress: the state before the event, from the unloaded "
-            "body on, "
-            "and what has changed since. The button leaves the change since the start (Δ)."
+            "body on, and what has changed since. The button leaves the change since the start (Δ)."
         )
     change = (
-        "With prescribed tractions displacement, strain and stress are shown as changes since the "
-        "start of the "
-        "event (Δ)"
+        "With prescribed tractions displacement, strain and stress are shown as changes since the start of "
+        "the event (Δ)"
     )
     yy, xy = (before[f"stress_{name}_Pa"] for name in ("yy", "xy"))
     if not np.isfinite([yy, xy]).all():
         return f"{change}: tractions that vary along the interface leave the state in the bulk unknown."
     return (
         f"{change}. Stress without Δ is absolute: the uniform state of the prescribed tractions, "
-        "σ<sub>yy</sub> = "
-        f"−p = {quantity(yy, 'Pa')} and σ<sub>xy</sub> = t = {quantity(xy, 'Pa')}, and the change. They "
-        "determine "
-        "neither σ<sub>xx</sub> nor the strain before the event. The button leaves the changes."
+        f"σ<sub>yy</sub> = −p = {quantity(yy, 'Pa')} and σ<sub>xy</sub> = t = {quantity(xy, 'Pa')}, and the "
+        "change. They determine neither σ<sub>xx</sub> nor the strain before the event. The button leaves "
+        "the changes."
     )
 
 
-def probes_section(probes: Probes, data: dict[str, Any], before: dict[str, float] | None) -> str:
+def probes_section(probes: xr.Dataset, data: dict[str, Any], before: dict[str, float] | None) -> str:
     choices = [choice for choice in data["choices"] if choice["parts"]]
     buttons = "".join(
         f'<button type="button" data-probes="{choice["name"]}" aria-pressed="false">{choice["name"]}</button>'
@@ -168,7 +165,6 @@ def probes_section(probes: Probes, data: dict[str, Any], before: dict[str, float
         f"{change if has_both else ''}</p>",
         plot("probes-plot", "Records of the probes over time"),
         f"<p>At the places of [probes]. {what_is_recorded(before)} Stress is positive in tension, "
-        "ε<sub>xy</sub> "
-        f"half the engineering shear strain.{told} A click on a name hides or shows the probe."
-        f"{left_out(probes)}</p>",
+        f"ε<sub>xy</sub> half the engineering shear strain.{told} A click on a name hides or shows the "
+        f"probe.{left_out(probes)}</p>",
     )

@@ -11,17 +11,17 @@ import numpy as np
 from slipfront.figures.main_fronts import DRAWN_LENGTH_M
 from slipfront.files import is_number
 from slipfront.folder import UNFINISHED, belongs
-from slipfront.read import STATUSES, Run, entry, median, read_run
+from slipfront.opened import OpenRun, drawn_history, open_run
+from slipfront.read import STATUSES, median
 from slipfront.report import setup
-from slipfront.report.fracture import ENERGIES, Fracture, fracture_data, fracture_of, fracture_section
-from slipfront.report.history import ThinHistory, thin_history
+from slipfront.report.fracture import ENERGIES, fracture_data, fracture_section
+from slipfront.report.history import ThinHistory, thinned
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
 from slipfront.report.probes import probe_data, probes_of, probes_section
 from slipfront.report.run_data import (
     MOST_FRAMES,
     constant_fields,
     has_snapshots,
-    history_of,
     run_data,
     units_of,
 )
@@ -39,8 +39,7 @@ ENDS = {
 DEFINITIONS = (
     "V<sub>tip</sub>: speed of the front's tip. t<sub>s</sub>, p<sub>s</sub>: tractions before the event; "
     "t<sub>d</sub>, p<sub>d</sub>: when the tip is l* short of the point; U<sub>s</sub>, U<sub>r</sub>: "
-    "energy density "
-    "there when the tip arrives and when it is about to go on. Definitions: docs/theory.md."
+    "energy density there when the tip arrives and when it is about to go on. Definitions: docs/theory.md."
 )
 
 
@@ -52,9 +51,9 @@ def number_words(value: Any, form: str, factor: float = 1.0, unit: str = "") -> 
     return f"{factor * value:{form}}{unit}" if is_number(value) else "not given"
 
 
-def mesh_words(run: Run) -> str:
+def mesh_words(run: OpenRun) -> str:
     mesh = run.info.get("mesh", {})
-    size = number_words(entry(run.case, "plate", "element_size_m"), ".4g", 1e3, " mm")
+    size = number_words(run.entry("plate", "element_size_m"), ".4g", 1e3, " mm")
     counts = [number_words(mesh.get(key), ",.0f") for key in ("columns", "rows", "nodes", "cells")]
     return (
         f"plate of {counts[0]} × {counts[1]} cells, {size} at the interface; {counts[2]} nodes, {counts[3]} "
@@ -62,7 +61,7 @@ def mesh_words(run: Run) -> str:
     )
 
 
-def ending(run: Run) -> str:
+def ending(run: OpenRun) -> str:
     """Whether a run is complete, and why it ended, in plain words."""
     if STATUSES[run.status] is not None:
         return f"<b>{words(run.place.with_reason(run.mark))}</b>"
@@ -82,7 +81,7 @@ def program_words(info: dict[str, Any]) -> str:
     )
 
 
-def facts(run: Run) -> str:
+def facts(run: OpenRun) -> str:
     info, steps = run.info, number_words(run.info.get("steps"), ",.0f")
     step = number_words(info.get("dt_s"), ".3g", 1e6, " µs")
     interface_step = number_words(info.get("interface_dt_s"), ".3g", 1e6, " µs")
@@ -99,7 +98,7 @@ def facts(run: Run) -> str:
     )  # fmt: skip
 
 
-def warnings_of(run: Run) -> str:
+def warnings_of(run: OpenRun) -> str:
     told = run.info.get("warnings", [])
     return warnings_list(run.remarks, "mark") + warnings_list(told if isinstance(told, list) else [])
 
@@ -115,8 +114,7 @@ def thinning(history: ThinHistory) -> str:
         return "Every time and node of the record is drawn, to three digits."
     return (
         f"To keep this page small it holds {' and '.join(skipped)}, to three digits; of the slip rate the "
-        "largest in "
-        "each block of them. Fronts are drawn in full. The whole record: interface.h5."
+        "largest in each block of them. Fronts are drawn in full. The whole record: interface.h5."
     )
 
 
@@ -198,8 +196,7 @@ def criteria_section(panels: list[str], folded: bool = False, more: str = "") ->
         "in all panels and in the diagrams above. A click keeps it. Box or lasso (in the bar above the plot) "
         "select many.</p>",
         f"<p>{DEFINITIONS} Full colour: nodes of main fronts, beyond the trigger and before they arrest; "
-        "pale: "
-        f"all others. Lines: wave speeds. {more}</p>",
+        f"pale: all others. Lines: wave speeds. {more}</p>",
     )
 
 
@@ -210,12 +207,11 @@ def energy_section(is_zero: bool = False) -> str:
         "energy",
         "Energy",
         plot("energy-plot", "Energies and works over time, stacked, and what they leave open"),
-        "<p>Per unit thickness, since the start. Above zero: where energy comes from, such as strain "
-        "energy that is released; below: where it goes. Both sides are equally large but for the imbalance, "
-        "which is drawn below over the largest term: each term is computed by itself. Closing gaps: kinetic "
-        "energy lost where the bodies meet again. Sub-steps: an error of the time stepping, where the "
-        "layer at "
-        "the interface moves in smaller steps than the rest.</p>",
+        "<p>Per unit thickness, since the start. Above zero: where energy comes from, such as strain energy "
+        "that is released; below: where it goes. Both sides are equally large but for the imbalance, which "
+        "is drawn below over the largest term: each term is computed by itself. Closing gaps: kinetic energy "
+        "lost where the bodies meet again. Sub-steps: an error of the time stepping, where the layer at the "
+        "interface moves in smaller steps than the rest.</p>",
     )
 
 
@@ -233,29 +229,28 @@ def snapshots_section(has_any: bool, n_of: str = "", is_still: bool = False) -> 
         SNAPSHOTS,
         time_slider("snapshots", play=True),
         plot("snapshots-plot", "Magnitude of the particle velocity in the bodies"),
-        "<p>Means over square pixels; colours go with the square root of the velocity's magnitude, within "
-        "1 % "
-        f"of the scale's end. Triangles: tips of fronts, pointing where they go. {n_of}</p>",
+        "<p>Means over square pixels; colours go with the square root of the velocity's magnitude, within 1 "
+        f"% of the scale's end. Triangles: tips of fronts, pointing where they go. {n_of}</p>",
     )
 
 
-def frames_words(run: Run) -> str:
+def frames_words(run: OpenRun) -> str:
     n = len(run.fields.time_s) if run.fields is not None else 0
     return f"{MOST_FRAMES} of {n} snapshots are shown." if n > MOST_FRAMES else ""
 
 
-def median_speeds(run: Run) -> dict[int, str]:
+def median_speeds(run: OpenRun) -> dict[int, str]:
     """Of each front, over c_L and c_S, by its id; empty words where it has no speed."""
     c_L, c_S = (run.info.get("wave_speeds", {}).get(f"{name}_m_per_s") for name in ("c_L", "c_S"))
     told = {}
-    for front in run.fronts:
+    for front in run.front_list:
         v_m_per_s = median(front.v_tip_m_per_s)
         if np.isfinite(v_m_per_s) and is_number(c_L) and is_number(c_S):
             told[front.id] = f"{v_m_per_s / c_L:.2f} c_L, {v_m_per_s / c_S:.2f} c_S"
     return told
 
 
-def fronts_section(run: Run, fracture: Fracture | None) -> str:
+def fronts_section(run: OpenRun) -> str:
     header = [
         "Front",
         "Direction",
@@ -266,12 +261,12 @@ def fronts_section(run: Run, fracture: Fracture | None) -> str:
         "End",
         "Slip",
         "Median V_tip",
-        *(["Median Γ (J/m²)", "G by slip (J/m²)"] if fracture else []),
+        *(["Median Γ (J/m²)", "G by slip (J/m²)"] if run.breakdown else []),
     ]
     speeds = median_speeds(run)
     energies = {
         front: [formatted(median(of[name]), ".3g") for name in ENERGIES]
-        for front, of in (fracture or {}).items()
+        for front, of in (run.breakdown or {}).items()
     }
     rows = [
         [*front_cells(f), speeds.get(f.get("id"), "–"), *energies.get(f.get("id"), [])]
@@ -300,23 +295,18 @@ PLACES = [
 ]
 
 
-def thin_run(folder: Path, most: tuple[int, int] = (MOST_TIMES, MOST_NODES)) -> Run:
-    return read_run(folder, thin_history(most))
-
-
 def page(folder: Path, _file: Path) -> Page:
-    run = thin_run(folder)
-    probes = probes_of(run.place)
-    data = run_data(run)
-    constant = constant_fields([run])
-    before = run.place.prestress(run.case)
+    run = open_run(folder)
+    history = thinned(drawn_history(run), (MOST_TIMES, MOST_NODES))
+    probes, before = probes_of(run), run.prestress
+    data = run_data(run, history)
+    constant = constant_fields([history])
     if probes is not None:
-        units = units_of(run)
+        units = units_of(history)
         data["probes"] = probe_data(probes, units["time"].factor, units["x"].factor, before)
-    fracture = fracture_of(run)
-    data["fracture"] = fracture_data(run, fracture, data["fronts"])
+    data["fracture"] = fracture_data(run, history, data["fronts"])
     missing = {"probes"} if probes is None else set()
-    missing |= {"fracture"} if fracture is None else set()
+    missing |= {"fracture"} if run.breakdown is None else set()
     snapshots = data["snapshots"]
     title = str(run.info.get("title", "")) or run.name
     return Page(
@@ -325,16 +315,16 @@ def page(folder: Path, _file: Path) -> Page:
             navigation([place for place in PLACES if place[0] not in missing]),
             section("setup", "Set-up", warnings_of(run), sketch(run), facts_table(setup.rows(run))),
             section("computation", "Computation", facts(run)),
-            space_time_section(thinning(history_of(run)), constant),
-            profiles_section(history_of(run)),
+            space_time_section(thinning(history), constant),
+            profiles_section(history),
             criteria_section(data["panels"], data["folded"]),
-            fracture_section(data["fracture"]) if fracture is not None else "",
+            fracture_section(data["fracture"]) if run.breakdown is not None else "",
             energy_section(not data["energy"]["terms"]),
             snapshots_section(
                 has_snapshots(run), frames_words(run), snapshots is not None and snapshots["still"]
             ),
             probes_section(probes, data["probes"], before) if probes is not None else "",
-            fronts_section(run, fracture),
+            fronts_section(run),
         ],
         data={
             "runs": [data],

@@ -12,9 +12,9 @@ import numpy as np
 from slipfront.figures.balance import TERMS
 from slipfront.figures.main_fronts import away_from_trigger, counted, drawn_fronts, main_fronts, start
 from slipfront.figures.style import DIRECTION_COLOURS
-from slipfront.files import is_number, read_table
-from slipfront.folder import result_file
-from slipfront.read import Balance, Fields, Front, Run, entry, even, ratio
+from slipfront.files import is_number
+from slipfront.opened import OpenRun
+from slipfront.read import Balance, Fields, Front, even, ratio
 from slipfront.report.history import ThinHistory
 from slipfront.report.numbers import Unit, listed, packed, packed_bytes, unit
 from slipfront.report.picture_grid import codes, pixel_grid
@@ -45,11 +45,11 @@ class FrontLook:
     symbol: str
 
 
-Look = Callable[[Run, Front], FrontLook]
+Look = Callable[[OpenRun, Front], FrontLook]
 Units = dict[str, Unit]
 
 
-def look_by_direction(run: Run, front: Front) -> FrontLook:
+def look_by_direction(run: OpenRun, front: Front) -> FrontLook:
     """Filled markers are fronts to -x, open ones those to +x, as in all figures."""
     colour = DIRECTION_COLOURS[front.direction]
     if front.direction < 0:
@@ -57,13 +57,7 @@ def look_by_direction(run: Run, front: Front) -> FrontLook:
     return FrontLook(f"front {front.id}, to +x", colour, "square-open")
 
 
-def history_of(run: Run) -> ThinHistory:
-    assert isinstance(run.history, ThinHistory)
-    return run.history
-
-
-def units_of(run: Run) -> Units:
-    history = history_of(run)
+def units_of(history: ThinHistory) -> Units:
     return {
         "x": unit("length", np.ptp(history.x_m)),
         "time": unit("time", history.time_s),
@@ -84,24 +78,22 @@ def history_data(history: ThinHistory, units: Units) -> dict[str, Any]:
     }
 
 
-def coefficients(run: Run, units: Units) -> list[dict[str, Any]]:
+def coefficients(run: OpenRun, units: Units) -> list[dict[str, Any]]:
     """mu_s and mu_k along x, where the law has them: of the nodes where they vary, else of the case."""
-    file = run.place.folder / "static.csv"
-    table = read_table(result_file(file))
     found = []
     for key in ("mu_s", "mu_k"):
-        constant = entry(run.case, "friction", key)
-        if key in table.header:
-            x, values = run.static_x_m, table.numbers(key)
+        constant = run.entry("friction", key)
+        if key in run.tractions:
+            x, values = run.x_m, run.tractions[key].to_numpy()
         elif is_number(constant):
-            x, values = run.static_x_m[[0, -1]], np.full(2, float(constant))
+            x, values = run.x_m[[0, -1]], np.full(2, float(constant))
         else:
             continue
         found.append({"name": key, "x": listed(x, units["x"].factor), "values": listed(values)})
     return found
 
 
-def front_data(run: Run, front: Front, units: Units, look: Look) -> dict[str, Any]:
+def front_data(run: OpenRun, front: Front, units: Units, look: Look) -> dict[str, Any]:
     """Points in the order of travel; what belongs to no criterion next to a trigger is null."""
     shown = away_from_trigger(run, front.x_m)
     drawn = look(run, front)
@@ -128,7 +120,7 @@ def front_data(run: Run, front: Front, units: Units, look: Look) -> dict[str, An
     }
 
 
-def wave_speeds(run: Run) -> dict[str, float]:
+def wave_speeds(run: OpenRun) -> dict[str, float]:
     """By name, m/s: of the plate; of two bodies of different speeds also of the base, and the generalised
     Rayleigh speed of both."""
     speeds = {wave: run.fact(f"wave_speeds.{wave}_m_per_s") for wave in WAVES}
@@ -144,7 +136,7 @@ def wave_speeds(run: Run) -> dict[str, float]:
     return speeds
 
 
-def wave_data(run: Run, units: Units) -> list[dict[str, Any]]:
+def wave_data(run: OpenRun, units: Units) -> list[dict[str, Any]]:
     """Speeds over c_L of the plate, and in the units of the space-time diagram."""
     per_unit = units["x"].factor / units["time"].factor
     return [
@@ -156,11 +148,11 @@ def wave_data(run: Run, units: Units) -> list[dict[str, Any]]:
 CONSTANT = 1e-3  # relative spread below which a field is told in words: half a unit of its third digit
 
 
-def constant_fields(runs: list[Run]) -> dict[str, str]:
+def constant_fields(histories: list[ThinHistory]) -> dict[str, str]:
     """Fields along the interface that are the same everywhere in all runs, by what to say of each."""
 
     def told(name: str, quantity_of: Callable[[ThinHistory], np.ndarray], unit: str) -> str | None:
-        fields = [quantity_of(history_of(run)) for run in runs]
+        fields = [quantity_of(history) for history in histories]
         finite = np.concatenate([values[np.isfinite(values)] for values in fields])
         if len(finite) == 0:
             return f"{name} is nowhere defined: the contact is open."
@@ -222,7 +214,7 @@ def energy_data(balance: Balance, units: Units) -> dict[str, Any]:
     }
 
 
-def tips_at(run: Run, time_s: float, units: Units, look: Look) -> list[dict[str, Any]]:
+def tips_at(run: OpenRun, time_s: float, units: Units, look: Look) -> list[dict[str, Any]]:
     found = []
     for front in drawn_fronts(run):
         tip_m = front.tip_m(time_s)
@@ -233,13 +225,12 @@ def tips_at(run: Run, time_s: float, units: Units, look: Look) -> list[dict[str,
     return found
 
 
-def opening_s(run: Run) -> float:
+def opening_s(run: OpenRun, history: ThinHistory) -> float:
     """The time that a page shows first: when the first of the main fronts is half-way; without any, that of
     the largest slip rate."""
     fronts = main_fronts(run) or drawn_fronts(run)
     if fronts:
         return float(min(0.5 * (front.onset_s[0] + front.onset_s[-1]) for front in fronts))
-    history = history_of(run)
     fastest = np.argmax(np.max(np.abs(history.slip_rate_m_per_s), axis=1))
     return float(history.time_s[fastest])
 
@@ -251,7 +242,7 @@ def opening_frame(time_s: np.ndarray, fastest: np.ndarray, largest: float, wante
     return int(candidates[np.argmin(np.abs(time_s[candidates] - wanted_s))])
 
 
-def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[str, Any]:
+def snapshot_data(run: OpenRun, fields: Fields, units: Units, look: Look, wanted_s: float) -> dict[str, Any]:
     """Speed of the particles in every snapshot, or in MOST_FRAMES of them."""
     grid = pixel_grid(fields)
     steps = even(len(fields.time_s), MOST_FRAMES).tolist()
@@ -267,7 +258,7 @@ def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[st
         "two_bodies": bool(grid.y_m[0] < 0),
         "largest": largest,
         "of": len(fields.time_s),
-        "opening": opening_frame(fields.time_s[steps], fastest, largest, opening_s(run)),
+        "opening": opening_frame(fields.time_s[steps], fastest, largest, wanted_s),
         "frames": [
             {
                 "time": fields.time_s[step] * units["time"].factor,
@@ -279,11 +270,10 @@ def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[st
     }
 
 
-def ratio_limit(run: Run) -> float:
+def ratio_limit(run: OpenRun, history: ThinHistory) -> float:
     """End of the axis of t/p: it goes to infinity where the contact opens."""
-    mu_s = entry(run.case, "friction", "mu_s")
+    mu_s = run.entry("friction", "mu_s")
     static = run.static_ratio[np.isfinite(run.static_ratio)]
-    history = history_of(run)
     moving = ratio(history.t_Pa, history.p_Pa)
     quantiles = np.nanquantile(np.abs(moving), 0.99) if np.isfinite(moving).any() else 0.0
     known = (
@@ -292,34 +282,37 @@ def ratio_limit(run: Run) -> float:
     return max(known) or 1.0
 
 
-def has_snapshots(run: Run) -> bool:
+def has_snapshots(run: OpenRun) -> bool:
     return run.fields is not None and len(run.fields.time_s) > 0
 
 
-def run_data(run: Run, look: Look = look_by_direction, name: str = "") -> dict[str, Any]:
+def run_data(
+    run: OpenRun, history: ThinHistory, look: Look = look_by_direction, name: str = ""
+) -> dict[str, Any]:
     """All that a run's plots show; `name` is what a page with several runs calls it."""
-    units, began = units_of(run), start(run)
+    units, began = units_of(history), start(run)
+    opening = opening_s(run, history)
     origin = None if began is None else [began[0] * units["x"].factor, began[1] * units["time"].factor]
     snapshots = run.fields if has_snapshots(run) else None
     fronts = [front_data(run, front, units, look) for front in drawn_fronts(run)]
     return {
         "name": name,
         "units": {quantity: unit.name for quantity, unit in units.items()},
-        "history": history_data(history_of(run), units),
+        "history": history_data(history, units),
         "static": {
-            "x": listed(run.static_x_m, units["x"].factor),
+            "x": listed(run.x_m, units["x"].factor),
             "ratio": listed(run.static_ratio),
             "coefficients": coefficients(run, units),
         },
-        "ratio_limit": ratio_limit(run),
+        "ratio_limit": ratio_limit(run, history),
         "waves": wave_data(run, units),
         "origin": origin,
-        "opening": opening_s(run) * units["time"].factor,
+        "opening": opening * units["time"].factor,
         "highest_v": HIGHEST_V,
         "largest_rise": LARGEST_RISE,
         "fronts": fronts,
         "panels": panels(fronts),
         "folded": is_uniform(run),
         "energy": energy_data(run.balance, units),
-        "snapshots": snapshot_data(run, snapshots, units, look) if snapshots is not None else None,
+        "snapshots": snapshot_data(run, snapshots, units, look, opening) if snapshots is not None else None,
     }

@@ -10,15 +10,15 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import to_hex
 
-from slipfront.figures.phases import RATE_RANGE_M_PER_S, phases, slip_after_events
+from slipfront.figures.sequence import RATE_RANGE_M_PER_S, phases, slip_after_events
 from slipfront.files import is_number, number
 from slipfront.folder import SEQUENCE
-from slipfront.opened_sequence import OpenSequence
-from slipfront.read import STATUSES, Place, entry, even, is_sequence, read_place
+from slipfront.opened_sequence import OpenSequence, open_sequence
+from slipfront.read import STATUSES, Place, entry, even, is_sequence
 from slipfront.report import setup
 from slipfront.report.numbers import Unit, listed, packed_bytes, unit
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
-from slipfront.report.run import MOST_NODES, MOST_TIMES, navigation, program_words, sessions_words, thin_run
+from slipfront.report.run import MOST_NODES, navigation, program_words, sessions_words
 from slipfront.report.sketch import sketch
 from slipfront.report.study import MOST_ROWS
 from slipfront.report.tables import formatted, table
@@ -78,8 +78,9 @@ def state_words(place: Place, key: str) -> str:
     return f"{ratio:.4f}, {words(phase)}: {shear} over {normal}, at {time} and a displacement of {moved}"
 
 
-def facts(place: Place, sequence: OpenSequence) -> str:
-    events, imbalance = sequence.events, place.info.get("imbalance_over_largest_energy")
+def facts(sequence: OpenSequence) -> str:
+    place, events = sequence.place, sequence.events
+    imbalance = place.info.get("imbalance_over_largest_energy")
     n = events.sizes["event"]
     n_global = int((events["is_global"] == 1).sum())
     return facts_table(
@@ -95,11 +96,11 @@ def facts(place: Place, sequence: OpenSequence) -> str:
     )
 
 
-def setup_section(place: Place, sequence: OpenSequence, remarks: list[str]) -> str:
+def setup_section(sequence: OpenSequence, remarks: list[str]) -> str:
     told = warnings_list(remarks, "mark")
     if len(sequence.runs) == 0:
         return section("setup", "Set-up", told, "<p>No event is complete.</p>")
-    first = thin_run(sequence.runs[0].folder, (MOST_TIMES, MOST_NODES))
+    first = sequence.runs[0]
     return section(
         "setup",
         "Set-up",
@@ -238,8 +239,8 @@ def plots(data: dict[str, Any], n_nodes: int) -> dict[str, str]:
     return found
 
 
-def events_section(place: Place, sequence: OpenSequence) -> str:
-    events = sequence.events
+def events_section(sequence: OpenSequence) -> str:
+    place, events = sequence.place, sequence.events
     n_events = events.sizes["event"]
     if n_events == 0:
         return section("events", "Events", "<p>None is complete.</p>")
@@ -288,8 +289,8 @@ def events_section(place: Place, sequence: OpenSequence) -> str:
 
 
 def page(folder: Path, _file: Path) -> Page:
-    place = read_place(folder, SEQUENCE)
-    sequence = OpenSequence(place)
+    sequence = open_sequence(folder)
+    place = sequence.place
     n_events = sequence.events.sizes["event"]
     told = mark(place, n_events)
     title = str(place.info.get("title", "")) or place.name
@@ -301,10 +302,10 @@ def page(folder: Path, _file: Path) -> Page:
         title=f"{title}: {told}" if told else title,
         parts=[
             navigation([part for part in PLACES if part[0] in (*always, *drawn)]),
-            setup_section(place, sequence, remarks),
-            section("computation", "Computation", facts(place, sequence)),
+            setup_section(sequence, remarks),
+            section("computation", "Computation", facts(sequence)),
             *drawn.values(),
-            events_section(place, sequence),
+            events_section(sequence),
         ],
         data={"runs": [], "sequence": data} if data else {},
         notes=remarks,

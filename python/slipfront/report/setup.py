@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from slipfront.files import is_number
-from slipfront.read import Run, entry, read_static
+from slipfront.opened import OpenRun
+from slipfront.read import entry
 from slipfront.report.page import words
 from slipfront.units import name_of, quantity, unit_of
 
@@ -24,35 +25,35 @@ EDGES = {
 }
 
 
-def si(run: Run, table: str, key: str, digits: int = 4) -> str:
+def si(run: OpenRun, table: str, key: str, digits: int = 4) -> str:
     """A number of the case in engineering units."""
-    value = entry(run.case, table, key)
+    value = run.entry(table, key)
     return quantity(value, unit_of(key), digits) if is_number(value) else "not given"
 
 
-def is_set(run: Run, table: str, key: str) -> bool:
+def is_set(run: OpenRun, table: str, key: str) -> bool:
     """Whether a number of the case is neither zero nor infinite."""
-    value = entry(run.case, table, key)
+    value = run.entry(table, key)
     return is_number(value) and value != 0
 
 
-def has_base(run: Run) -> bool:
-    return entry(run.case, "base", "kind") == "body"
+def has_base(run: OpenRun) -> bool:
+    return run.entry("base", "kind") == "body"
 
 
-def is_uniform(run: Run) -> bool:
+def is_uniform(run: OpenRun) -> bool:
     """Whether the tractions were prescribed, and equal along the interface."""
-    return run.prescribed and not entry(run.case, "prestress", "file")
+    return run.prescribed and not run.entry("prestress", "file")
 
 
-def edge(run: Run, table: str, key: str) -> str:
-    told = str(entry(run.case, table, key))
+def edge(run: OpenRun, table: str, key: str) -> str:
+    told = str(run.entry(table, key))
     if told == "loaded" and run.prescribed and not is_set(run, "loading", "shear_speed_over_c_L"):
         return "held"
     return words(EDGES.get(told, told))
 
 
-def material(run: Run, table: str) -> str:
+def material(run: OpenRun, table: str) -> str:
     parts = [
         f"E = {si(run, table, 'youngs_modulus_Pa')}",
         f"ν = {si(run, table, 'poissons_ratio')}",
@@ -63,11 +64,11 @@ def material(run: Run, table: str) -> str:
     return ", ".join([*parts, damping])
 
 
-def plate(run: Run) -> str:
+def plate(run: OpenRun) -> str:
     size = f"{si(run, 'plate', 'width_m')} × {si(run, 'plate', 'height_m')}"
-    plane = f"plane {words(entry(run.case, 'material', 'plane'))}"
+    plane = f"plane {words(run.entry('material', 'plane'))}"
     edges = f"upper edge {edge(run, 'plate', 'top')}, sides {edge(run, 'plate', 'sides')}"
-    corner = entry(run.case, "plate", "corner")
+    corner = run.entry("plate", "corner")
     rounded = {
         "relief": f"; lower corners relieved over {si(run, 'plate', 'relief_length_m')}",
         "fillet": f"; lower corners rounded, radius {si(run, 'plate', 'fillet_radius_m')}",
@@ -75,7 +76,7 @@ def plate(run: Run) -> str:
     return f"{size}, {plane}; {material(run, 'material')}; {edges}{rounded.get(str(corner), '')}"
 
 
-def base(run: Run) -> str:
+def base(run: OpenRun) -> str:
     if not has_base(run):
         return "rigid plane"
     size = f"{si(run, 'plate', 'width_m')} × {si(run, 'base', 'height_m')}"
@@ -83,7 +84,7 @@ def base(run: Run) -> str:
     return f"{size}; {material(run, 'base')}; {edges}"
 
 
-def waves(run: Run) -> str:
+def waves(run: OpenRun) -> str:
     def told(speeds: Any) -> str:
         speeds = speeds if isinstance(speeds, dict) else {}
         found = ((name, speeds.get(f"{wave}_m_per_s")) for wave, name in WAVES.items())
@@ -124,10 +125,10 @@ def forces(found: dict[str, Any]) -> list[str]:
     ]
 
 
-def machine(run: Run) -> str:
+def machine(run: OpenRun) -> str:
     """Stiffness and path of what loads the plate, in words; empty of a rigid machine at a constant speed."""
-    along_x, down = (entry(run.case, "loading", f"{name}_stiffness_Pa") for name in ("shear", "normal"))
-    times_s, shears_m = (entry(run.case, "sequence", name) for name in ("times_s", "shears_m"))
+    along_x, down = (run.entry("loading", f"{name}_stiffness_Pa") for name in ("shear", "normal"))
+    times_s, shears_m = (run.entry("sequence", name) for name in ("times_s", "shears_m"))
     parts = []
     if is_number(along_x) and math.isfinite(along_x):
         parts.append(f"machine of stiffness {quantity(along_x, 'Pa')} along x")
@@ -139,20 +140,20 @@ def machine(run: Run) -> str:
     return "".join(f"; {part}" for part in parts)
 
 
-def loads(run: Run) -> str:
+def loads(run: OpenRun) -> str:
     """p and t before the event, and where they come from."""
-    speed = entry(run.case, "loading", "shear_speed_over_c_L")
+    speed = run.entry("loading", "shear_speed_over_c_L")
     moves = (
         f"; upper edge moves to +x at {speed * run.c_L_m_per_s:.3g} m/s" if is_number(speed) and speed else ""
     ) + machine(run)
     if is_uniform(run):
         p, t = si(run, "prestress", "p_Pa"), si(run, "prestress", "t_Pa")
         return f"pressure p = {p}, shear t = {t}, prescribed, uniform{moves}"
-    static = read_static(run.place.folder / "static.csv")
-    pressed = static["p_s_Pa"] > 0
+    t_s, p_s = (run.tractions[name].to_numpy() for name in ("t_s_Pa", "p_s_Pa"))
+    pressed = p_s > 0
     of_nodes = "no contact"
     if pressed.any():
-        p, t = spread(static["p_s_Pa"][pressed], "Pa"), spread(static["t_s_Pa"][pressed], "Pa")
+        p, t = spread(p_s[pressed], "Pa"), spread(t_s[pressed], "Pa")
         of_nodes = f"pressure p {p}, shear t {t} along x"
     if run.prescribed:
         return f"{of_nodes}, prescribed by a table{moves}"
@@ -166,7 +167,7 @@ def loads(run: Run) -> str:
     sheared = entry(run.info, "statics", "common_shear_m")
     by = f"by {quantity(sheared, 'm')} " if is_number(sheared) else ""
     pushed = left if left == right else f"{left} at its left end, {right} at its right"
-    to_m = entry(run.case, "loading", "pusher_to_m")
+    to_m = run.entry("loading", "pusher_to_m")
     if is_number(to_m) and to_m > 0:
         heights = f"{si(run, 'loading', 'pusher_from_m')} to {si(run, 'loading', 'pusher_to_m')}"
         moved = f"left side pushed {by}to +x at heights of {heights}"
@@ -176,9 +177,9 @@ def loads(run: Run) -> str:
     return "; ".join([*forces(found), moves, of_nodes])
 
 
-def table_of_mu(run: Run, over: str, unit: str) -> str:
-    places, mu = (entry(run.case, "friction", key) for key in (over, "table_mu"))
-    factor = entry(run.case, "friction", "mu_factor")
+def table_of_mu(run: OpenRun, over: str, unit: str) -> str:
+    places, mu = (run.entry("friction", key) for key in (over, "table_mu"))
+    factor = run.entry("friction", "mu_factor")
     if not (isinstance(places, list) and isinstance(mu, list) and is_number(factor)):
         return "not given"
     rows = zip(places, mu, strict=False)
@@ -187,14 +188,14 @@ def table_of_mu(run: Run, over: str, unit: str) -> str:
     )
 
 
-def law(run: Run) -> str:
+def law(run: OpenRun) -> str:
     def number(key: str) -> str:
         return si(run, "friction", key)
 
     def both() -> str:
         return f"{MU_S} = {number('mu_s')}, {MU_K} = {number('mu_k')}"
 
-    match entry(run.case, "friction", "law"):
+    match run.entry("friction", "law"):
         case "velocity_weakening":
             return f"weakens with the slip rate: {both()}, α = {number('alpha_m2_per_s2')}"
         case "coulomb":
@@ -215,9 +216,9 @@ def law(run: Run) -> str:
             return words(f"{other}: {', '.join(parts)}")
 
 
-def friction(run: Run) -> str:
+def friction(run: OpenRun) -> str:
     parts = [law(run)]
-    delayed = entry(run.case, "friction", "regularisation")
+    delayed = run.entry("friction", "regularisation")
     if delayed in ("strength", "pressure"):
         follows = "strength follows" if delayed == "strength" else "pressure in the strength follows"
         rates = {
@@ -231,18 +232,18 @@ def friction(run: Run) -> str:
             if is_set(run, "friction", key)
         ]
         parts.append(f"{follows} with a delay, {', '.join(told)}")
-    if entry(run.case, "friction", "file"):
+    if run.entry("friction", "file"):
         parts.append("parameters vary along x by a table")
-    varied = entry(run.case, "friction", "random_key")
+    varied = run.entry("friction", "random_key")
     if isinstance(varied, str) and varied not in ("", "none"):
-        share = entry(run.case, "friction", "random_share")
+        share = run.entry("friction", "random_share")
         by = f" by {100 * share:.3g} %" if is_number(share) else ""
         length = si(run, "friction", "random_correlation_length_m")
         parts.append(words(f"{name_of(varied)} varies at random{by}, correlation length {length}"))
     return "; ".join(parts)
 
 
-def rise(run: Run) -> str:
+def rise(run: OpenRun) -> str:
     ramp = (
         f", rising over {si(run, 'event', 'trigger_ramp_s')}"
         if is_set(run, "event", "trigger_ramp_s")
@@ -256,14 +257,14 @@ def rise(run: Run) -> str:
     return ramp + ends
 
 
-def start(run: Run) -> str:
+def start(run: OpenRun) -> str:
     """What starts the event: form, zone, amount."""
-    amount = f"{entry(run.case, 'event', 'trigger_amount')}"
-    match run.kind, entry(run.case, "event", "trigger_form"):
+    amount = f"{run.entry('event', 'trigger_amount')}"
+    match run.kind, run.entry("event", "trigger_form"):
         case "none", _:
             return "nothing but the loads"
         case "spontaneous", _:
-            if str(entry(run.case, "friction", "law")).startswith("rate_and_state"):
+            if str(run.entry("friction", "law")).startswith("rate_and_state"):
                 return "spontaneous: slip is as fast as inertia counts"
             return "spontaneous: the shear just exceeds the critical one"
         case ("left" | "right") as side, form:
@@ -276,18 +277,17 @@ def start(run: Run) -> str:
             return f"trigger over {zone} at the {side} edge: {forms.get(str(form), words(form))}"
         case "nucleation", _:
             patch = (
-                f"patch around x = {si(run, 'nucleation', 'x_m')}, "
-                f"{si(run, 'nucleation', 'half_length_m')} to "
-                f"each side and a taper of {si(run, 'nucleation', 'taper_m')}"
+                f"patch around x = {si(run, 'nucleation', 'x_m')}, {si(run, 'nucleation', 'half_length_m')} "
+                f"to each side and a taper of {si(run, 'nucleation', 'taper_m')}"
             )
-            if entry(run.case, "nucleation", "form") == "overstress":
+            if run.entry("nucleation", "form") == "overstress":
                 return f"{patch}: shear of {si(run, 'nucleation', 'overstress_Pa')} added{rise(run)}"
             return f"{patch}: μ = {MU_K} from the start"
         case kind, _:
             return words(kind)
 
 
-def rupture(run: Run) -> str:
+def rupture(run: OpenRun) -> str:
     """S before the event, and what it lets expect; of runs that tell it."""
     told = run.info.get("rupture")
     if not isinstance(told, dict):
@@ -309,7 +309,7 @@ def rupture(run: Run) -> str:
     return words("; ".join(part for part in parts if part))
 
 
-def rows(run: Run) -> list[tuple[str, str]]:
+def rows(run: OpenRun) -> list[tuple[str, str]]:
     return [
         ("Case", words(run.info.get("title", "") or "without a title")),
         ("Plate", plate(run)),

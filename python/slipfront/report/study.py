@@ -86,14 +86,9 @@ def convergence_verdicts(summary: dict[str, Any]) -> str:
             first = [name, shown_values(entry)] if i == 0 else ["", ""]
             rows.append([*first, fronts, words(part["verdict"]), *map(words, numbers)])
     header = [
-        "Parameter",
-        "Values (SI), the case's own bold",
-        "Fronts",
-        "Verdict",
-        "Median error",
-        "Order",
+        "Parameter", "Values (SI), the case's own bold", "Fronts", "Verdict", "Median error", "Order",
         "Stations",
-    ]
+    ]  # fmt: skip
     return f"<p>Tolerance: {percent(summary['tolerance'])}.</p>" + table(header, rows)
 
 
@@ -106,8 +101,7 @@ def interface_step_verdicts(summary: dict[str, Any]) -> str:
         f"time.step_factor = {chosen['step_factor']:g}, time.interface_rows = {chosen['interface_rows']}, "
         f"time.interface_substeps = {chosen['interface_substeps']}; 90 % of the stations within "
         f"{percent(chosen['p90_error'])} at {chosen['cost_over_plain']:.3g} times the cost of the plain "
-        "scheme. "
-        "A case with it: chosen.toml.</p>"
+        "scheme. A case with it: chosen.toml.</p>"
     )
 
 

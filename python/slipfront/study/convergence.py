@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from slipfront.files import DataError
+from slipfront.read import median
 from slipfront.study.runs import Printed, Study, make_parser, number, numbers, printed
 from slipfront.study.runs import main as study_main
-from slipfront.study.sequence import Limit, Summary, extrapolate, median, summarise
-from slipfront.study.speeds import Place, Run
+from slipfront.study.speeds import Limit, Place, Run, Summary, extrapolate, summarise
 from slipfront.sweep.engine import default_workers
-from slipfront.sweep.values import Value
+from slipfront.sweep.points import Value
 
 NAME = "convergence"
 SIZE, FACTOR, SUBSTEPS = "plate.element_size_m", "time.step_factor", "time.interface_substeps"
@@ -37,7 +37,7 @@ class Plan:
 
     @property
     def step_sizes(self) -> np.ndarray:
-        """q of sequence.py: falls towards the limit; 0 at the limit itself. [values]"""
+        """q of extrapolate: falls towards the limit; 0 at the limit itself. [values]"""
         return np.array([1 / value if self.key == SUBSTEPS else value for value in self.values])
 
     @property

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from slipfront.read import median
 from slipfront.study.runs import Printed, Study, make_parser, number, numbers, printed
 from slipfront.study.runs import main as study_main
-from slipfront.study.sequence import FEWEST_STATIONS, UNDEFINED, extrapolate, median, p90
-from slipfront.study.speeds import Place, Run
-from slipfront.sweep.values import Value
+from slipfront.study.speeds import FEWEST_STATIONS, UNDEFINED, Place, Run, extrapolate, p90
+from slipfront.sweep.points import Value
 
 NAME = "interface-step"
 FACTOR, ROWS, SUBSTEPS = "time.step_factor", "time.interface_rows", "time.interface_substeps"

@@ -15,15 +15,16 @@ from typing import Any
 from slipfront import command
 from slipfront.files import DataError, exists, is_folder, read_json_table
 from slipfront.folder import UNFINISHED, publication
-from slipfront.study.speeds import Run, main_fronts
+from slipfront.opened import open_run
+from slipfront.program import answer, find_program, version_of, with_settings
+from slipfront.read import longest_each_way
+from slipfront.study.speeds import Run
 from slipfront.sweep import folder as places
 from slipfront.sweep.command import once_each
 from slipfront.sweep.definition import Sweep, flattened
-from slipfront.sweep.outcome import read_run
-from slipfront.sweep.points import Point
-from slipfront.sweep.program import answer, find_program, version_of, with_settings
+from slipfront.sweep.outcome import Slipped
+from slipfront.sweep.points import Point, Value, text_of, value_of
 from slipfront.sweep.sweeping import How, carry_out
-from slipfront.sweep.values import Value, text_of, value_of
 
 RUNS = "runs"
 #: Of any study; one of another kind may have been in the folder before.
@@ -154,9 +155,9 @@ class Study:
         place = places.place_of(self.folder / RUNS, point)
         wrong = places.what_is_wrong(place, point)
         if wrong is None:
-            run, margin_m = read_run(place), self.case["fronts.trigger_margin_m"]
-            left_out_m = [(a - margin_m, b + margin_m) for a, b in run.driven_m]
-            return Run(run.info, main_fronts(run.all_fronts), left_out_m)
+            run, margin_m = open_run(place), self.case["fronts.trigger_margin_m"]
+            left_out_m = [(a - margin_m, b + margin_m) for a, b in Slipped(run).driven_m]
+            return Run(run.info, longest_each_way(run.front_list), left_out_m)
         if reason := places.blew_up(place):
             return Run(read_json_table(place / UNFINISHED / "run.json"), {}, [], reason)
         raise DataError(f"{point.words}: {places.failure_of(self.folder / RUNS, point) or wrong}")

@@ -14,9 +14,8 @@ from slipfront.files import DataError
 from slipfront.sweep.definition import KEEPS, Sweep, is_sweep_file, read_sweep
 from slipfront.sweep.engine import default_workers
 from slipfront.sweep.folder import read_definition
-from slipfront.sweep.slurm import array_script
-from slipfront.sweep.sweeping import How, carry_out
-from slipfront.sweep.values import value_of
+from slipfront.sweep.points import value_of
+from slipfront.sweep.sweeping import How, array_script, carry_out
 
 NAME = "slipfront sweep"
 SOME_FAILED = 1

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from slipfront.files import DataError, exists, parse_toml, read_text, read_toml
-from slipfront.sweep.points import Point, grid, sample, zipped
-from slipfront.sweep.values import Value, range_of, text_of, values_of
+from slipfront.sweep.points import Point, Value, grid, range_of, sample, text_of, values_of, zipped
 
 COMBINATIONS = ("grid", "zip", "sample")
 KEEPS = ("all", "tables")

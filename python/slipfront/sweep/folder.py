@@ -29,10 +29,9 @@ from slipfront.files import (
     read_toml,
 )
 from slipfront.folder import LIST, RUN, SEQUENCE, UNFINISHED, inside, problem, read_list, sha256
+from slipfront.program import find_program, version_of
 from slipfront.sweep.definition import ENTRIES, Sweep, flattened, is_value
-from slipfront.sweep.points import Point
-from slipfront.sweep.program import version_of
-from slipfront.sweep.values import Value, text_of, value_of
+from slipfront.sweep.points import Point, Value, text_of, value_of
 
 DEFINITION = "sweep.json"
 POINTS = "points"
@@ -87,6 +86,15 @@ def held(folder: Path, shared: bool = False) -> Iterator[None]:
         except OSError:
             raise DataError(f"{folder}: another sweep is at work in it") from None
         yield
+
+
+def begun(sweep: Sweep, folder: Path) -> tuple[Path, dict[str, Any]]:
+    """The program and what points have in common, of a sweep that is sound and a folder that may hold it."""
+    sweep.require_sound()
+    program = find_program()
+    identity = identity_of(sweep, program)
+    require_usable(folder, sweep, identity)
+    return program, identity
 
 
 def require_usable(folder: Path, sweep: Sweep, identity: dict[str, Any]) -> None:

@@ -71,11 +71,7 @@ def is_logarithmic(ascending: np.ndarray) -> bool:
 def edges(centres: np.ndarray, logarithmic: bool) -> np.ndarray:
     """Of cells around the centres, half way to the next. [centres + 1]"""
     c = np.log(centres) if logarithmic else np.asarray(centres, dtype=float)
-    middle = (c[1:] + c[:-1]) / 2
-    if len(c) == 1:
-        middle = c + 0.5
-    first, last = 2 * c[0] - middle[0], 2 * c[-1] - middle[-1]
-    out = np.array([first, *middle, last] if len(c) > 1 else [first, *middle])
+    out = style.cell_edges(c) if len(c) > 1 else c + np.array([-0.5, 0.5])
     return np.exp(out) if logarithmic else out
 
 

@@ -12,20 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from slipfront.files import DataError, is_number, number, read_json_table, read_toml
+from slipfront.files import DataError, is_number, number, read_json_table
 from slipfront.folder import RUN, SEQUENCE, result_file
-from slipfront.read import (
-    SPEED_KINDS,
-    Front,
-    entry,
-    is_sequence,
-    median,
-    ratio,
-    read_columns,
-    read_fracture,
-    read_fronts,
-    read_static,
-)
+from slipfront.opened import OpenRun, open_run
+from slipfront.read import SPEED_KINDS, Front, is_sequence, median, ratio, read_columns
 
 Cell = float | int | str
 Interval = tuple[float, float]
@@ -53,30 +43,52 @@ def length_of(parts: list[Interval]) -> float:
     return covered
 
 
-@dataclass(frozen=True)
-class Run:
-    """What there is of a run without its histories."""
+class Slipped:
+    """What the fronts of a run have run over by themselves. Its histories are not needed."""
 
-    info: dict[str, Any]
-    file: Path  # run.json
-    all_fronts: list[Front]
-    fracture: dict[int, dict[str, np.ndarray]] | None  # of read_fracture
-    x_m: np.ndarray  # nodes, ascending
-    least_front_m: float  # length below which slip that spreads is no front of its own
-    contact_m: Interval  # outermost nodes under pressure before the event
-    driven_m: list[Interval]  # where the event's trigger makes the nodes slip
-    heard_m: list[Interval]  # next to absorbing edges, where these change the onsets
+    def __init__(self, run: OpenRun) -> None:
+        self.run = run
 
-    def fact(self, key: str) -> float:
-        return number(self.file, self.info, key)
+    @cached_property
+    def contact_m(self) -> Interval:
+        """Outermost nodes under pressure before the event."""
+        pressed = self.run.x_m[self.run.tractions["p_s_Pa"].to_numpy() > 0]
+        if len(pressed) < 2:
+            raise DataError(
+                f"{self.run.folder / 'static.csv'}: fewer than two nodes are in contact before the event"
+            )
+        return float(pressed[0]), float(pressed[-1])
+
+    @cached_property
+    def driven_m(self) -> list[Interval]:
+        """The trigger zone, or the nucleation patch, which a periodic plate continues at the other edge."""
+        run = self.run
+        if run.kind in ("left", "right"):
+            zone_m = run.parameter("event.trigger_zone_m")
+            from_m, to_m = self.contact_m
+            return [(from_m, from_m + zone_m) if run.kind == "left" else (to_m - zone_m, to_m)]
+        if run.kind != "nucleation":
+            return []
+        names = ("x_m", "half_length_m", "taper_m")
+        x_m, half_m, taper_m = (run.parameter(f"nucleation.{name}") for name in names)
+        is_periodic = run.entry("plate", "sides") == "periodic"
+        period_m = run.parameter("plate.width_m") if is_periodic else 0.0
+        reach_m = half_m + taper_m
+        return [(x_m + shift - reach_m, x_m + shift + reach_m) for shift in {0.0, -period_m, period_m}]
+
+    @cached_property
+    def heard_m(self) -> list[Interval]:
+        """Within l* of absorbing edges, whose dashpots take part in the onsets of the last nodes."""
+        if "absorbing" not in (self.run.entry("plate", "sides"), self.run.entry("base", "sides")):
+            return []
+        x_m = self.run.x_m
+        reach_m = max(self.run.parameter("fronts.l_star_m"), float(np.diff(x_m).max()))
+        reach_m += ROUNDING * float(x_m[-1] - x_m[0])
+        return [(float(x_m[0]), float(x_m[0]) + reach_m), (float(x_m[-1]) - reach_m, float(x_m[-1]))]
 
     @property
     def rounding_m(self) -> float:
         return ROUNDING * (self.contact_m[1] - self.contact_m[0])
-
-    @property
-    def c_L_m_per_s(self) -> float:
-        return self.fact("wave_speeds.c_L_m_per_s")
 
     def path(self, front: Front) -> list[Interval]:
         """What a front has run over by itself, of what was in contact."""
@@ -90,31 +102,26 @@ class Run:
     @cached_property
     def fronts(self) -> list[Front]:
         """Those that leave the zone in which the trigger makes the nodes slip."""
-        return [front for front in self.all_fronts if self.length_m(front) > self.rounding_m]
+        return [front for front in self.run.front_list if self.length_m(front) > self.rounding_m]
 
     def speeds(self, front: Front) -> np.ndarray:
         """V_tip/c_L where something travels: where `speed_kind` says so, away from absorbing edges."""
         is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty where the file has none
         for from_m, to_m in self.heard_m:
             is_speed &= (front.x_m < from_m) | (front.x_m > to_m)
-        found = front.v_tip_m_per_s[is_speed] / self.c_L_m_per_s
+        found = front.v_tip_m_per_s[is_speed] / self.run.c_L_m_per_s
         return found[~np.isnan(found)]
 
     @property
     def longest(self) -> Front | None:
         return max(self.fronts, key=self.length_m, default=None)
 
-    def told(self, front: Front, entry: str) -> str:
-        """What run.json says of a front in words."""
-        for known in self.info.get("fronts", []):
-            if known.get("id") == front.id:
-                return str(known.get(entry, ""))
-        return ""
-
     def slipped_by(self, front: Front) -> Interval:
-        """What a front has run over, and what it met ahead: that may be too short for a front of its own."""
+        """What a front has run over, and what it met ahead."""
         from_m, to_m = float(front.x_m.min()), float(front.x_m.max())
-        met_m = self.least_front_m if self.told(front, "end") == "meets_front" else 0.0
+        meets = self.run.told(front, "end") == "meets_front"
+        # It may be too short for a front of its own.
+        met_m = self.run.parameter("fronts.min_length_m") if meets else 0.0
         return (from_m, to_m + met_m) if front.direction > 0 else (from_m - met_m, to_m)
 
     def is_reached(self, direction: int) -> bool:
@@ -122,13 +129,13 @@ class Run:
         the patch, else from where the longest front starts. An end inside the zone is not reached."""
         if self.longest is None:
             return False
-        ahead = direction * self.x_m  # positions along the direction
+        ahead = direction * self.run.x_m  # positions along the direction
         end_m = direction * self.contact_m[direction > 0] - self.rounding_m
         edges = [direction * edge for zone in self.driven_m if self.touches(zone) for edge in zone]
         if edges and max(edges) >= end_m:
             return False
         at_m = max(edges, default=direction * float(self.longest.x_m[0]))
-        parts = [sorted(direction * x for x in self.slipped_by(front)) for front in self.all_fronts]
+        parts = [sorted(direction * x for x in self.slipped_by(front)) for front in self.run.front_list]
         for from_m, to_m in sorted(parts):
             if not ((ahead > at_m + self.rounding_m) & (ahead < from_m - self.rounding_m)).any():
                 at_m = max(at_m, to_m)
@@ -198,14 +205,15 @@ def undefined_or(found: Any) -> float:
     return float(found) if is_number(found) else np.nan
 
 
-def as_a_crack(run: Run, front: Front) -> dict[str, Cell]:
+def as_a_crack(slipped: Slipped, front: Front) -> dict[str, Cell]:
     """Medians over the nodes beyond the trigger zone where the front's breakdown came to its end."""
-    if run.fracture is None:
+    breakdown = slipped.run.breakdown
+    if breakdown is None:
         return {}
     is_own = np.full(len(front.x_m), True)
-    for from_m, to_m in run.driven_m:
+    for from_m, to_m in slipped.driven_m:
         is_own &= (front.x_m < from_m) | (front.x_m > to_m)
-    own = {name: values[is_own] for name, values in run.fracture[front.id].items()}
+    own = {name: values[is_own] for name, values in breakdown[front.id].items()}
     energy = own["breakdown_work_J_per_m2"]
     return {
         "longest_front_fracture_energy_median_J_per_m2": median(energy),
@@ -214,19 +222,19 @@ def as_a_crack(run: Run, front: Front) -> dict[str, Cell]:
     }
 
 
-def of_longest(run: Run) -> dict[str, Cell]:
+def of_longest(slipped: Slipped) -> dict[str, Cell]:
     """What there is without a front, and of the longest one."""
-    front = run.longest
+    run, front = slipped.run, slipped.longest
     if front is None:
         return {"longest_front_slip": NONE, "longest_front_end": NONE, "longest_front_length_m": 0.0}
-    speeds = run.speeds(front)
+    speeds = slipped.speeds(front)
     measured: dict[str, Cell] = {
-        "longest_front_slip": run.told(front, "mode"),
-        "longest_front_end": run.told(front, "end"),
-        "longest_front_length_m": run.length_m(front),
+        "longest_front_slip": run.told(front, "mode") or "",
+        "longest_front_end": run.told(front, "end") or "",
+        "longest_front_length_m": slipped.length_m(front),
         "longest_front_direction": front.direction,
         "longest_front_start_x_m": float(front.x_m[0]),
-        **as_a_crack(run, front),
+        **as_a_crack(slipped, front),
     }
     if len(speeds):
         measured["longest_front_v_tip_largest_over_c_L"] = float(speeds.max())
@@ -234,22 +242,23 @@ def of_longest(run: Run) -> dict[str, Cell]:
     return measured
 
 
-def measured(run: Run) -> dict[str, Cell]:
+def measured(run: OpenRun) -> dict[str, Cell]:
     """By the names of OF_RUNS; NaN where undefined."""
-    slipped_m = length_of([part for front in run.fronts for part in run.path(front)])
-    whole_m = length_of(without(run.contact_m, run.driven_m))
-    ends = [name for name, direction in (("left", -1), ("right", 1)) if run.is_reached(direction)]
-    speeds = np.concatenate([np.empty(0), *map(run.speeds, run.fronts)])
-    expected = run.info.get("rupture") or {}  # null lengths under a law that does not weaken over a slip
+    slipped, info = Slipped(run), run.info
+    slipped_m = length_of([part for front in slipped.fronts for part in slipped.path(front)])
+    whole_m = length_of(without(slipped.contact_m, slipped.driven_m))
+    ends = [name for name, direction in (("left", -1), ("right", 1)) if slipped.is_reached(direction)]
+    speeds = np.concatenate([np.empty(0), *map(slipped.speeds, slipped.fronts)])
+    expected = info.get("rupture") or {}  # null lengths under a law that does not weaken over a slip
     at_end = {
         term: run.fact(f"energy_at_end.{term}_J_per_m")
         for term in ("strain", "kinetic", "friction_work", "trigger_work", "damping_work")
     }
     cells: dict[str, Cell] = {
         **{quantity.name: np.nan for quantity in OF_RUNS},
-        **of_longest(run),
-        "n_fronts": len(run.fronts),
-        "n_arrested": sum(run.told(front, "end") == "arrest" for front in run.fronts),
+        **of_longest(slipped),
+        "n_fronts": len(slipped.fronts),
+        "n_arrested": sum(run.told(front, "end") == "arrest" for front in slipped.fronts),
         "v_tip_largest_over_c_L": float(speeds.max()) if len(speeds) else np.nan,
         "slipped_length_m": slipped_m,
         "slipped_share": slipped_m / whole_m if whole_m > 0 else np.nan,
@@ -263,43 +272,9 @@ def measured(run: Run) -> dict[str, Cell]:
         "trigger_work_J_per_m": at_end["trigger_work"],
         "damping_work_J_per_m": at_end["damping_work"],
         "end_s": run.fact("time_s"),
-        "end_reason": str(run.info.get("end", "")),
+        "end_reason": str(info.get("end", "")),
     }
     return cells
-
-
-def contact_of(columns: dict[str, np.ndarray], file: Path) -> tuple[float, float]:
-    pressed = columns["x_m"][columns["p_s_Pa"] > 0]
-    if len(pressed) < 2:
-        raise DataError(f"{file}: fewer than two nodes are in contact before the event")
-    return float(pressed[0]), float(pressed[-1])
-
-
-def driven_zones(case: dict[str, Any], file: Path, contact_m: Interval) -> list[Interval]:
-    """The trigger zone, or the nucleation patch, which a periodic plate may continue at the other edge."""
-    kind = entry(case, "event", "kind")
-    if kind in ("left", "right"):
-        zone_m = number(file, case, "event.trigger_zone_m")
-        from_m, to_m = contact_m
-        return [(from_m, from_m + zone_m) if kind == "left" else (to_m - zone_m, to_m)]
-    if kind != "nucleation":
-        return []
-    names = ("x_m", "half_length_m", "taper_m")
-    x_m, half_m, taper_m = (number(file, case, f"nucleation.{name}") for name in names)
-    is_periodic = entry(case, "plate", "sides") == "periodic"
-    period_m = number(file, case, "plate.width_m") if is_periodic else 0.0
-    reach_m = half_m + taper_m
-    return [(x_m + shift - reach_m, x_m + shift + reach_m) for shift in {0.0, -period_m, period_m}]
-
-
-def heard_zones(case: dict[str, Any], file: Path, static: dict[str, np.ndarray]) -> list[Interval]:
-    """Within l* of absorbing edges, whose dashpots take part in the onsets of the last nodes."""
-    if "absorbing" not in (entry(case, "plate", "sides"), entry(case, "base", "sides")):
-        return []
-    x_m = static["x_m"]
-    reach_m = max(number(file, case, "fronts.l_star_m"), float(np.diff(x_m).max()))
-    reach_m += ROUNDING * float(x_m[-1] - x_m[0])
-    return [(float(x_m[0]), float(x_m[0]) + reach_m), (float(x_m[-1]) - reach_m, float(x_m[-1]))]
 
 
 def waves_over_c_L(file: Path) -> dict[str, float]:
@@ -307,24 +282,6 @@ def waves_over_c_L(file: Path) -> dict[str, float]:
     info = read_json_table(result_file(file))
     speeds = {wave: number(file, info, f"wave_speeds.{wave}_m_per_s") for wave in ("c_R", "c_S", "c_L")}
     return {f"{wave}_over_c_L": speed / speeds["c_L"] for wave, speed in speeds.items()}
-
-
-def read_run(place: Path) -> Run:
-    file = place / "case.resolved.toml"
-    case, static = read_toml(result_file(file)), read_static(place / "static.csv")
-    contact_m = contact_of(static, place / "static.csv")
-    fronts = read_fronts(place / "fronts.csv")
-    return Run(
-        info=read_json_table(result_file(place / "run.json")),
-        file=place / "run.json",
-        all_fronts=fronts,
-        fracture=read_fracture(place / "fracture.csv", fronts),
-        x_m=static["x_m"],
-        least_front_m=number(file, case, "fronts.min_length_m"),
-        contact_m=contact_m,
-        driven_m=driven_zones(case, file, contact_m),
-        heard_m=heard_zones(case, file, static),
-    )
 
 
 def read_sequence(place: Path) -> dict[str, Cell]:
@@ -360,4 +317,4 @@ def notes_on(place: Path) -> list[str]:
 
 def read_outcome(place: Path) -> dict[str, Cell]:
     """By the names of OF_RUNS or OF_SEQUENCES."""
-    return read_sequence(place) if is_sequence(place) else measured(read_run(place))
+    return read_sequence(place) if is_sequence(place) else measured(open_run(place))

@@ -14,6 +14,7 @@ import numpy as np
 from slipfront.files import exists
 from slipfront.report.page import Page, embedded, words
 from slipfront.report.tables import table
+from slipfront.sweep.engine import DONE
 from slipfront.sweep.maps import SHOWN, axis_of, waves_of
 from slipfront.sweep.outcome import QUANTITIES, Quantity
 from slipfront.sweep.tables import (
@@ -27,7 +28,6 @@ from slipfront.sweep.tables import (
     read_dataset,
     shown_in,
 )
-from slipfront.sweep.work import DONE
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,6 +13,7 @@ from slipfront.files import DataError, exists
 from slipfront.folder import LIST, located, publication, result_file, sha256
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
+from slipfront.sweep.engine import DONE, FAILED
 from slipfront.sweep.outcome import (
     OF_RUNS,
     QUANTITIES,
@@ -22,9 +23,7 @@ from slipfront.sweep.outcome import (
     teller,
     waves_over_c_L,
 )
-from slipfront.sweep.points import Point, short_names
-from slipfront.sweep.values import as_array, text_of, values_of
-from slipfront.sweep.work import DONE, FAILED
+from slipfront.sweep.points import Point, as_array, short_names, text_of, values_of
 from slipfront.units import Unit, engineering, name_of, unit_of
 
 if TYPE_CHECKING:
