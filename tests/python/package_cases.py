@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import slipfront
-from common import built, call, require_done
+from common import built, call, require_done, sets
 from slipfront.running import flattened
 
 # A few hundredths of a second.
@@ -32,9 +32,9 @@ def write_case(folder: Path, case: str | dict = CASE) -> Path:
     return file
 
 
-def results_of(folder: Path, case: str | dict = CASE) -> Path:
+def results_of(folder: Path, case: str | dict = CASE, *settings: str) -> Path:
     """The folder of the program's run of a case."""
-    require_done(program("run", write_case(folder, case), "-q", "-o", "out", cwd=folder))
+    require_done(program("run", write_case(folder, case), "-q", "-o", "out", *sets(*settings), cwd=folder))
     return folder / "out"
 
 
