@@ -1,21 +1,39 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What tests of several folders need: programs as users run them, how they end, what their folders hold."""
 
+import contextlib
+import csv
 import importlib.util
+import io
 import json
 import os
 import re
+import runpy
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[1]
 #: What takes longer hangs.
 HANG_S = 900
 #: Python's environment with this source tree's package.
 WITH_PACKAGE = {**os.environ, "PYTHONPATH": str(ROOT / "python"), "SLIPFRONT_PYTHON": sys.executable}
+
+#: Elements of 5 mm: a run takes a few hundredths of a second.
+COARSE = """\
+title = "coarse"
+
+[plate]
+element_size_m = 5e-3
+
+[friction]
+law = "velocity_weakening"
+mu_s = 1.3
+mu_k = 0.6
+"""
 
 #: Runs a command, and prints its peak of resident memory, B. What its parent held when it was forked counts
 #: as its own: this one, which is small, stands between. Linux gives kB.
@@ -83,6 +101,22 @@ def call(*command, **options):
         return finished(process)
 
 
+def call_script(path, *arguments):
+    """A script of this tree as it is run by itself, but in this process. @return as of subprocess.run"""
+    command, out, err = [str(ROOT / path), *map(str, arguments)], io.StringIO(), io.StringIO()
+    with (
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        mock.patch.object(sys, "argv", command),
+    ):
+        try:
+            runpy.run_path(command[0], run_name="__main__")
+            code = 0
+        except SystemExit as end:
+            code = end.code
+    return subprocess.CompletedProcess(command, code, out.getvalue(), err.getvalue())
+
+
 def require_done(result):
     assert result.returncode == 0, f"{result.args}\n{result.stderr}"
     return result
@@ -144,6 +178,12 @@ def sets(*assignments):
 
 def run_json(folder):
     return json.loads((folder / "run.json").read_text())
+
+
+def rows_of(file):
+    """Rows of a table, by the names of its columns."""
+    with open(file, newline="") as stream:
+        return list(csv.DictReader(line for line in stream if not line.startswith("#")))
 
 
 def require_same_bytes(a, b, *names):

@@ -29,10 +29,7 @@ SEQUENCE = [
     "papers/kammer2012/spontaneous.toml",
     *sets("plate.element_size_m=4e-3", "fronts.l_star_m=4e-3", "time.end_s=20e-3", "sequence.max_events=3"),
 ]
-STICK_SLIP = [
-    "examples/stick-slip/case.toml",
-    *sets("plate.element_size_m=8e-3", "sequence.max_events=3"),
-]
+STICK_SLIP = ["examples/stick-slip/case.toml", *sets("plate.element_size_m=8e-3", "sequence.max_events=3")]
 STABLE = [*STICK_SLIP, *sets("friction.a=0.02", "sequence.end_s=300", "friction.d_c_m=1e-5")]
 PLOTS = {  # of other pages those of a run
     "sequence": ("forces", "extents", "slips"),

@@ -7,22 +7,9 @@ import signal
 import threading
 
 import pytest
-from common import HANG_S, as_from_a_terminal, built, finished, start
+from common import COARSE, HANG_S, as_from_a_terminal, built, finished, start
 
 as_from_a_terminal()
-
-# Elements of 5 mm: a run takes a few hundredths of a second.
-COARSE = """\
-title = "coarse"
-
-[plate]
-element_size_m = 5e-3
-
-[friction]
-law = "velocity_weakening"
-mu_s = 1.3
-mu_k = 0.6
-"""
 
 
 class Program:

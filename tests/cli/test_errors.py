@@ -125,13 +125,8 @@ def test_output_folder_that_is_a_link(program, coarse, tmp_path):
     assert (tmp_path / "target/checksums.sha256").is_file()
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        "plate.element_size_m=3e-3",  # found when it is read
-        "loading.edge_margin_m=0.0999",  # found by the statics
-    ],
-)
+# Found when the case is read, and by the statics.
+@pytest.mark.parametrize("wrong", ["plate.element_size_m=3e-3", "loading.edge_margin_m=0.0999"])
 def test_wrong_case_does_not_cost_earlier_results(program, coarse, tmp_path, wrong):
     require_done(program("run", coarse, "-o", "out", "-q"))
     before = tree(tmp_path)
@@ -190,9 +185,8 @@ def test_full_disk_does_not_cost_earlier_results(program, coarse, tmp_path):
     require_done(program("run", coarse, "-o", "out", "-q"))
     before = tree(tmp_path / "out")
     one_line(program("run", coarse, "-o", "out", "-q", "--overwrite", file_bytes=1 << 16), 1)
-    assert {
-        path: data for path, data in tree(tmp_path / "out").items() if "unfinished" not in path.parts
-    } == before
+    after = tree(tmp_path / "out")
+    assert {path: data for path, data in after.items() if "unfinished" not in path.parts} == before
 
 
 def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
@@ -203,9 +197,6 @@ def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
     assert "fields.vtkhdf" in one_line(program("run", *case, "-o", "out", file_bytes=most), 1)
     require_done(program("run", "--restart", "out", "-q"))
     require_same_bytes(tmp_path / "out", tmp_path / "whole", *RESULTS, "fields.vtkhdf")
-
-
-# --- Measured points for claim E1
 
 
 # --- Runs that go on
@@ -226,9 +217,8 @@ def test_restart_takes_no_other_folder_and_no_changes(program, tmp_path, argumen
 
 
 def test_a_small_stack(program, coarse, tmp_path):
-    assert "a stack of 128 KiB is too small" in refusal(
-        program("run", coarse, "-o", "out", stack_bytes=128 << 10)
-    )
+    line = refusal(program("run", coarse, "-o", "out", stack_bytes=128 << 10))
+    assert "a stack of 128 KiB is too small" in line
     assert not (tmp_path / "out").exists()
     require_done(program("run", coarse, "-o", "out", "-q", "--threads", "2", stack_bytes=1 << 20))
 

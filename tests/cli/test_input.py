@@ -8,19 +8,12 @@ import pytest
 from common import finished, one_line, refusal, require_done, require_same_bytes, run_json, sets
 
 PRESTRESSED = """\
-[plate]
-element_size_m = 5e-3
-corner = "none"
-[loading]
-method = "prestress"
-[prestress]
-file = "table.csv"
-[event]
-kind = "nucleation"
-[nucleation]
-x_m = 0.1
-[time]
-end_s = 2e-5
+plate = {element_size_m = 5e-3, corner = "none"}
+loading.method = "prestress"
+prestress.file = "table.csv"
+event.kind = "nucleation"
+nucleation.x_m = 0.1
+time.end_s = 2e-5
 """
 TABLE = "x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.2,2.3e6,5e6\n"
 

@@ -5,19 +5,13 @@ import re
 
 import numpy as np
 import pytest
-from common import finished, refusal, require_done, require_same_bytes, run_json, sets, wait_until
+from common import finished, refusal, require_done, require_same_bytes, run_json, sets, wait_until_or_over
 
 CASE = """\
-[plate]
-element_size_m = 5e-3
-corner = "none"
-[loading]
-mean_pressure_Pa = 5e6
-shear_over_critical = 0.8
-[event]
-kind = "left"
-[time]
-end_s = 1e-4
+plate = {element_size_m = 5e-3, corner = "none"}
+loading = {mean_pressure_Pa = 5e6, shear_over_critical = 0.8}
+event.kind = "left"
+time.end_s = 1e-4
 """
 FORCE_N_PER_M = 5e6 * 0.2
 RESULTS = ("case.resolved.toml", "interface.h5", "fronts.csv", "static.csv", "energy.csv")
@@ -53,7 +47,7 @@ def force(folder, column):
         (("loading.shear_force_N_per_m=nan",), "loading.shear_force_N_per_m is nan N/m; it must be a finite"),
         (
             ("loading.normal_force_N_per_m=1e6", "loading.mean_pressure_Pa=1e6"),
-            "loading.mean_pressure_Pa applies only with",
+            "mean_pressure_Pa applies only",
         ),
         (
             ("loading.method=ramp", "loading.shear_over_critical=0.5"),
@@ -115,7 +109,7 @@ def test_the_resolved_case_runs_again_and_a_stopped_run_goes_on(program, case, t
     require_done(program("run", tmp_path / "whole/case.resolved.toml", "-o", "again", "-q"))
     require_same_bytes(tmp_path / "again", tmp_path / "whole", *RESULTS)
     process = program.start("run", case, "-o", "out", "-q", *slow, "--checkpoint-every-simulated", "1e-5")
-    wait_until(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")), process)
+    wait_until_or_over(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")), process)
     process.kill()
     finished(process)
     require_done(program("run", "--restart", "out", "-q"))

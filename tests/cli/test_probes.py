@@ -4,8 +4,7 @@
 import h5py
 import numpy as np
 import pytest
-from common import refusal, require_done, run_json, sets
-from conftest import COARSE
+from common import COARSE, refusal, require_done, run_json, sets
 from slipfront.opened import open_run
 from slipfront.read import PROBE_FIELDS
 
@@ -64,13 +63,11 @@ def test_snapshots_have_strain_and_stress_of_the_cells(program, coarse, tmp_path
         cells = group["Connectivity"][:].reshape(-1, 4)
         xy, step = group["Points"][:, :2][cells], 1
         u = group["PointData/displacement_m"][step * n_points : (step + 1) * n_points, :2][cells]
-        data = {
-            name: values[step * n_cells : (step + 1) * n_cells] for name, values in group["CellData"].items()
-        }
+        own = slice(step * n_cells, (step + 1) * n_cells)
+        data = {name: values[own] for name, values in group["CellData"].items()}
+        offsets = [k * n_cells for k in range(len(times))]
         for name in data:
-            assert group["Steps/CellDataOffsets"][name][:].tolist() == [
-                k * n_cells for k in range(len(times))
-            ]
+            assert group["Steps/CellDataOffsets"][name][:].tolist() == offsets
     # The mean gradient over a parallelogram is that of the centre; all cells here are ones or nearly so.
     diagonals = np.stack([xy[:, 2] - xy[:, 0], xy[:, 3] - xy[:, 1]], axis=1)
     gradient = np.linalg.solve(diagonals, np.stack([u[:, 2] - u[:, 0], u[:, 3] - u[:, 1]], axis=1))
@@ -132,8 +129,7 @@ def test_wrong_probes_are_refused_with_their_line(program, write_case, tmp_path,
 
 @pytest.mark.parametrize("y_m, n_near", [("[0.01, 0.0]", 0), ("[0.004, 0.0]", 1), ("[0.004, 0.002]", 2)])
 def test_probes_within_two_elements_of_the_interface_are_noted(program, probed, y_m, n_near):
-    printed = require_done(
-        program("validate", probed, *sets("plate.element_size_m=5e-3", f"probes.y_m={y_m}"))
-    ).stdout
+    places = sets("plate.element_size_m=5e-3", f"probes.y_m={y_m}")
+    printed = require_done(program("validate", probed, *places)).stdout
     note = f"note: probes: {n_near} of 2 are less than two elements, 0.01 m, from the interface"
     assert (note in printed) == (n_near > 0)

@@ -2,7 +2,6 @@
 """Runs from the command line: results, progress, interruption, blow-up."""
 
 import contextlib
-import csv
 import ctypes
 import fcntl
 import math
@@ -19,6 +18,7 @@ import h5py
 import numpy as np
 import pytest
 from common import (
+    COARSE,
     ROOT,
     catches_interrupts,
     finished,
@@ -26,22 +26,17 @@ from common import (
     one_line,
     require_done,
     require_same_bytes,
+    rows_of,
     run_json,
     sets,
     settings,
     wait_until,
 )
+from conftest import Program
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
 
-SO_FAR = {
-    "case.resolved.toml",
-    "run.json",
-    "interface.h5",
-    "fronts.csv",
-    "fracture.csv",
-    "static.csv",
-    "energy.csv",
-}
+SO_FAR = {f"{name}.csv" for name in ("fronts", "fracture", "static", "energy")}
+SO_FAR |= {"case.resolved.toml", "run.json", "interface.h5"}
 FILES = SO_FAR | {"checksums.sha256"}
 
 
@@ -58,32 +53,35 @@ def files_in(folder):
     return {path.name for path in folder.iterdir()}
 
 
-def rows(file):
-    with open(file, newline="") as stream:
-        return list(csv.DictReader(stream))
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """What a run of the coarse case prints, and its folder."""
+    program = Program(tmp_path_factory.mktemp("whole"))
+    (program.folder / "coarse.toml").write_text(COARSE)
+    result = program("run", "coarse.toml", "-o", "deep/out", *sets("output.energy_interval_s=5e-6"))
+    return require_done(result).stdout, program.folder / "deep/out"
 
 
-def test_run_writes_its_folder(program, coarse, tmp_path):
-    result = require_done(program("run", coarse, "-o", "deep/out"))
-    out = tmp_path / "deep/out"
+def test_run_writes_its_folder(whole):
+    printed, out = whole
     assert files_in(out) == FILES
-    assert "reaches mu_s at x = " in result.stdout
-    assert "results: deep/out" in result.stdout
+    assert "reaches mu_s at x = " in printed
+    assert "results: deep/out" in printed
     run = run_json(out)
     assert run["end"] in ("end_time", "quiet")
     assert run["title"] == "coarse"
     for front in run["fronts"]:
-        assert re.search(rf"^front {front['id']}: .*{front['mode']}", result.stdout, re.MULTILINE)
+        assert re.search(rf"^front {front['id']}: .*{front['mode']}", printed, re.MULTILINE)
 
 
-def test_fronts_file_has_its_columns(program, coarse, tmp_path):
-    require_done(program("run", coarse, "-o", "out", "-q"))
-    points = rows(tmp_path / "out/fronts.csv")
+def test_fronts_file_has_its_columns(whole):
+    _, out = whole
+    points = rows_of(out / "fronts.csv")
     assert ",".join(points[0]) == (
         "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
         "U_s_J_per_m3,U_r_J_per_m3,speed_kind"
     )
-    assert {row["front_id"] for row in points} == {str(f["id"]) for f in run_json(tmp_path / "out")["fronts"]}
+    assert {row["front_id"] for row in points} == {str(f["id"]) for f in run_json(out)["fronts"]}
     for row in points:
         assert row["direction"] in ("1", "-1")
         assert row["speed_kind"] in ("front", "triggered", "simultaneous", "path_end")
@@ -92,11 +90,11 @@ def test_fronts_file_has_its_columns(program, coarse, tmp_path):
             assert abs(float(row["t_r_Pa"])) == pytest.approx(1.3 * float(row["p_r_Pa"]), rel=1e-12)
 
 
-def test_energies_balance(program, coarse, tmp_path):
-    require_done(program("run", coarse, "-o", "out", "-q", "--set", "output.energy_interval_s=5e-6"))
-    times = rows(tmp_path / "out/energy.csv")
+def test_energies_balance(whole):
+    _, out = whole
+    times = rows_of(out / "energy.csv")
     assert list(times[0]) == ["time_s", *(f"{term}_J_per_m" for term in (*ENERGY_TERMS, "imbalance"))]
-    run = run_json(tmp_path / "out")
+    run = run_json(out)
     assert list(run["energy_at_end"]) == [f"{term}_J_per_m" for term in ENERGY_TERMS]
     assert len(times) > 5
     assert float(times[-1]["time_s"]) == run["time_s"]
@@ -104,9 +102,8 @@ def test_energies_balance(program, coarse, tmp_path):
     assert max(abs(float(row["imbalance_J_per_m"])) for row in times) < 1e-10 * largest
 
 
-def test_history_is_hdf5_with_units(program, coarse, tmp_path):
-    require_done(program("run", coarse, "-o", "out", "-q"))
-    with h5py.File(tmp_path / "out/interface.h5") as file:
+def test_history_is_hdf5_with_units(whole):
+    with h5py.File(whole[1] / "interface.h5") as file:
         assert {name: file[name].attrs["unit"] for name in file if not name.startswith("row")} == {
             "time_s": "s", "x_m": "m", "slip_m": "m", "slip_rate_m_per_s": "m/s", "t_Pa": "Pa", "p_Pa": "Pa",
         }  # fmt: skip
@@ -155,9 +152,8 @@ def test_resolved_case_runs_to_the_same_fronts(program, tmp_path):
 def test_a_fast_ramp_ends_where_slip_begins_inside(program, coarse, tmp_path, speed, beyond):
     """In a step the node nearest to slip passes from below mu_s p to slip, and weakens at once."""
     case = sets("plate.element_size_m=4e-3", "loading.method=ramp", "event.kind=spontaneous")
-    result = require_done(
-        program("run", coarse, "-o", "out", *case, *sets(f"loading.shear_speed_over_c_L={speed}"))
-    )
+    case += sets(f"loading.shear_speed_over_c_L={speed}")
+    result = require_done(program("run", coarse, "-o", "out", *case))
     ramp = run_json(tmp_path / "out")["statics"]["ramp"]
     assert 0 <= ramp["relative_to_direct"] < beyond
     assert ramp["onsets_inside"] == 1
@@ -242,9 +238,10 @@ def test_a_checkpoint_on_demand_is_made_at_once(program, coarse, tmp_path):
     """Behind the step at which it is asked for, not behind the next of each 50 at which others are made."""
     process = program.start("run", coarse, "-o", "out", *sets("plate.element_size_m=1e-3"), *LONG)
     wait_until((tmp_path / "out/unfinished/energy.csv").exists, process)
-    for _ in range(4):
+    state = tmp_path / "out/unfinished/state"
+    for n in range(1, 5):
         process.send_signal(signal.SIGUSR1)
-        time.sleep(0.1)
+        wait_until(lambda n=n: any(int(p.stem[-6:]) >= n for p in state.glob("checkpoint-*.bin")), process)
     process.send_signal(signal.SIGTERM)
     told = re.findall(r"^note: checkpoint at t = (\S+) s", finished(process).stderr, re.MULTILINE)
     step_s = run_json(tmp_path / "out/unfinished")["dt_s"]
@@ -302,9 +299,8 @@ def test_progress_without_a_terminal_is_plain_lines(program, coarse, tmp_path):
 def test_progress_on_a_terminal(program, coarse):
     terminal, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-    process = program.start(
-        "run", coarse, "-o", "out", *with_end(0.1), stdout=subprocess.DEVNULL, stderr=slave
-    )
+    streams = {"stdout": subprocess.DEVNULL, "stderr": slave}
+    process = program.start("run", coarse, "-o", "out", *with_end(0.1), **streams)
     os.close(slave)
     shown = b""
     with contextlib.suppress(OSError), open(terminal, "rb", buffering=0) as stream:  # the other end is closed
@@ -320,6 +316,12 @@ def test_progress_on_a_terminal(program, coarse):
 
 
 PRESTRESSED = """
+loading.method = "prestress"
+prestress.file = "table.csv"
+friction = {law = "slip_weakening", regularisation = "pressure", relaxation_time_s = 2e-6}
+event.kind = "nucleation"
+nucleation = {x_m = 0.05, half_length_m = 0.015, taper_m = 5e-3}
+time.end_s = 60e-6
 [plate]
 width_m = 0.1
 height_m = 0.02
@@ -327,22 +329,6 @@ element_size_m = 1e-3
 corner = "none"
 sides = "periodic"
 top = "absorbing"
-[loading]
-method = "prestress"
-[prestress]
-file = "table.csv"
-[friction]
-law = "slip_weakening"
-regularisation = "pressure"
-relaxation_time_s = 2e-6
-[event]
-kind = "nucleation"
-[nucleation]
-x_m = 0.05
-half_length_m = 0.015
-taper_m = 5e-3
-[time]
-end_s = 60e-6
 """
 
 
@@ -352,7 +338,7 @@ def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
     write_case(PRESTRESSED, "cases/c.toml")
     run = require_done(program("run", "cases/c.toml", "-o", "out"))
     assert "prescribed tractions, t/p up to 0.4596 at x = 0.099 m" in run.stdout
-    static = rows(tmp_path / "out/static.csv")
+    static = rows_of(tmp_path / "out/static.csv")
     assert len(static) == 100
     assert float(static[50]["t_s_Pa"]) == pytest.approx(2.2e6, rel=1e-12)
     assert {front["direction"] for front in run_json(tmp_path / "out")["fronts"]} == {-1, 1}

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Studies of a case from the command line: what they find, and how they go on."""
 
-import csv
 import json
 import re
 import signal
 import sys
 
 import pytest
-from common import ROOT, finished, refusal, require_done, require_same_bytes, sets, wait_until
+from common import ROOT, finished, refusal, require_done, require_same_bytes, rows_of, sets, wait_until
 from slipfront.figures import interface_step
 from slipfront.figures.convergence import read_study
 from slipfront.folder import verify_checksums
@@ -140,8 +139,7 @@ def test_interface_step_study_writes_a_case_that_runs(program, coarse, tmp_path)
     options = ("--rows", "2,4,400", "--substeps", "4,8", "--tolerance", "0.5", *LEFT)
     result = require_done(program("study", "interface-step", coarse, "-o", "out", *options))
     assert "cheapest within 50 %" in result.stdout
-    with open(tmp_path / "out/interface_step.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "out/interface_step.csv")
     kinds = [row["kind"] for row in rows]
     assert kinds == ["plain"] * 4 + ["layer"] * 4 + ["extrapolated"] * 2
     cost = [float(row["cost_over_plain"]) for row in rows]

@@ -7,6 +7,7 @@ COARSE = {"plate.element_size_m": 5e-3, "event.kind": "left", "output.snapshot_t
 EARLIER = {"plate.element_size_m": 5e-3, "friction.mu_k": 0.9}
 
 _PRESTRESSED = {
+    "plate.element_size_m": 1e-3,
     "plate.width_m": 0.1,
     "plate.height_m": 0.02,
     "plate.corner": "none",
@@ -20,68 +21,36 @@ _PRESTRESSED = {
     "nucleation.half_length_m": 0.015,
     "output.snapshot_times_s": [1e-5, 3e-5],
 }
-_TRIGGERED = {"event.kind": "left", "output.snapshot_times_s": [1e-5, 5e-5, 1e-4]}
+_COARSER = {"plate.element_size_m": 4e-3}
+_TRIGGERED = _COARSER | {"event.kind": "left", "output.snapshot_times_s": [1e-5, 5e-5, 1e-4]}
+_FINER = _TRIGGERED | {"plate.element_size_m": 2.5e-3}
+_GRADED = _FINER | {"plate.fine_height_m": 0.02, "plate.corner": "none"}
 
 #: By name: settings, with elements so coarse that a run takes a moment.
 KINDS = {
-    "triggered": _TRIGGERED | {"plate.element_size_m": 4e-3},
-    "spontaneous": {"event.kind": "spontaneous", "plate.element_size_m": 4e-3, "friction.mu_k": 1.0},
-    "fillet": _TRIGGERED
-    | {"plate.element_size_m": 2.5e-3, "plate.corner": "fillet", "plate.fillet_radius_m": 0.01},
-    "graded": _TRIGGERED
-    | {
-        "plate.element_size_m": 2.5e-3,
-        "plate.coarsenings": 2,
-        "plate.fine_height_m": 0.02,
-        "plate.corner": "none",
-    },
-    "graded_one_step": _TRIGGERED
-    | {
-        "plate.element_size_m": 2.5e-3,
-        "plate.coarsenings": 1,
-        "plate.fine_height_m": 0.02,
-        "plate.corner": "none",
-        "time.local_steps": False,
-    },
-    "predictor_corrector": _TRIGGERED
-    | {"plate.element_size_m": 4e-3, "contact.algorithm": "predictor_corrector"},
-    "single_precision": _TRIGGERED | {"plate.element_size_m": 4e-3, "time.precision": "single"},
+    "triggered": _TRIGGERED,
+    "spontaneous": _COARSER | {"event.kind": "spontaneous", "friction.mu_k": 1.0},
+    "fillet": _FINER | {"plate.corner": "fillet", "plate.fillet_radius_m": 0.01},
+    "graded": _GRADED | {"plate.coarsenings": 2},
+    "graded_one_step": _GRADED | {"plate.coarsenings": 1, "time.local_steps": False},
+    "predictor_corrector": _TRIGGERED | {"contact.algorithm": "predictor_corrector"},
+    "single_precision": _TRIGGERED | {"time.precision": "single"},
     "ramp": {"plate.element_size_m": 5e-3, "loading.method": "ramp"},
-    "coulomb": _TRIGGERED | {"plate.element_size_m": 4e-3, "friction.law": "coulomb", "friction.mu": 1.0},
+    "coulomb": _TRIGGERED | {"friction.law": "coulomb", "friction.mu": 1.0},
     "delayed_strength": _TRIGGERED
-    | {
-        "plate.element_size_m": 4e-3,
-        "friction.regularisation": "strength",
-        "friction.relaxation_time_s": 2e-6,
-    },
-    "prestressed_periodic": _PRESTRESSED | {"plate.element_size_m": 1e-3, "plate.sides": "periodic"},
+    | {"friction.regularisation": "strength", "friction.relaxation_time_s": 2e-6},
+    "prestressed_periodic": _PRESTRESSED | {"plate.sides": "periodic"},
     "prestressed_absorbing": _PRESTRESSED
-    | {
-        "plate.element_size_m": 1e-3,
-        "plate.sides": "absorbing",
-        "friction.regularisation": "pressure",
-        "friction.relaxation_time_s": 2e-6,
-    },
+    | {"plate.sides": "absorbing", "friction.regularisation": "pressure", "friction.relaxation_time_s": 2e-6},
     "overstressed_healing": _PRESTRESSED
-    | {
-        "plate.element_size_m": 1e-3,
-        "plate.sides": "periodic",
-        "friction.law": "slip_weakening_healing",
-        "nucleation.form": "overstress",
-        "nucleation.overstress_Pa": 1.5e6,
-        "event.trigger_duration_s": 2e-5,
-    },
-    "plain_steps": _TRIGGERED | {"plate.element_size_m": 4e-3, "time.interface_substeps": 1},
+    | {"plate.sides": "periodic", "friction.law": "slip_weakening_healing", "nucleation.form": "overstress"}
+    | {"nucleation.overstress_Pa": 1.5e6, "event.trigger_duration_s": 2e-5},
+    "plain_steps": _TRIGGERED | {"time.interface_substeps": 1},
 }
-
 
 #: End of the events that are to go on for about a second, s; of the others below.
-_LONG_S = {
-    "fillet": 3e-3,
-    "prestressed_periodic": 2e-3,
-    "prestressed_absorbing": 2e-3,
-    "overstressed_healing": 2e-3,
-}
+_LONG_S = {"fillet": 3e-3}
+_LONG_S |= dict.fromkeys(("prestressed_periodic", "prestressed_absorbing", "overstressed_healing"), 2e-3)
 
 
 def long(kind):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Random legal cases: their energies balance, and their files do not depend on the number of threads."""
 
-import csv
 import json
 import random
+
+from common import rows_of
 
 from .cases import KINDS
 from .trials import Trial, Wrong, alone, remove, require, require_same
@@ -109,8 +110,7 @@ def rest_J_per_m(settings):
 
 
 def relative_imbalance(folder, settings):
-    with open(folder / "energy.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(folder / "energy.csv")
     names = [name for name in rows[0] if name.endswith("_J_per_m") and name != "imbalance_J_per_m"]
     largest = max(abs(float(row[name])) for row in rows for name in names)
     imbalance = max(abs(float(row["imbalance_J_per_m"])) for row in rows)

@@ -55,18 +55,9 @@ class Setting:
         """@return the process, and how many calls it made"""
         count = folder.parent / "count"
         count.write_bytes(bytes(8))
-        process = self.bench.run(
-            *self.command,
-            "-o",
-            folder,
-            disturbance={
-                "FAULT_BELOW": str(folder),
-                "FAULT_COUNT": str(count),
-                "FAULT_AT": str(n),
-                "FAULT_MODE": mode,
-                "FAULT_ERROR": str(error),
-            },
-        )
+        fault = {"BELOW": folder, "COUNT": count, "AT": n, "MODE": mode, "ERROR": error}
+        disturbance = {f"FAULT_{name}": str(value) for name, value in fault.items()}
+        process = self.bench.run(*self.command, "-o", folder, disturbance=disturbance)
         return process, int.from_bytes(count.read_bytes(), "little")
 
     def calls(self):

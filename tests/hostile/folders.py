@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a machine does to a run: two processes in one folder, foreign files, signals, closed streams."""
 
+import itertools
 import os
 import shutil
 import signal
@@ -49,10 +50,7 @@ def while_one_runs(setting):
     case = bench.case(long("triggered"))
     process, folder = stopped_under_way(bench, case, lambda out: (out / "unfinished/interface.h5").exists())
     try:
-        for command in (
-            ("run", case, "-o", folder, "--overwrite"),
-            ("run", "--restart", folder),
-        ):
+        for command in (("run", case, "-o", folder, "--overwrite"), ("run", "--restart", folder)):
             line = one_line(bench.run(*command), 2)
             require(f"in use by process {process.pid}" in line, line)
         process.send_signal(signal.SIGCONT)
@@ -66,52 +64,30 @@ def while_one_runs(setting):
 # --- Foreign contents
 
 
-def _folder(path, elsewhere):
-    path.mkdir()
-    (path / "precious.txt").write_text("precious")
+PRECIOUS = "precious.txt"
 
 
-def _state_folder(path, elsewhere):
-    (path / "state").mkdir(parents=True)
-    (path / "state/precious.txt").write_text("precious")
+def _file(path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("precious")
 
 
-def _listed_folder(path, elsewhere):
-    path.mkdir()
-    (path / "precious.txt").write_text("precious")
-    (path / "checksums.sha256").write_text(f"{'0' * 64}  precious.txt\n")
+def _listed_folder(path):
+    _file(path / PRECIOUS)
+    (path / "checksums.sha256").write_text(f"{'0' * 64}  {PRECIOUS}\n")
 
 
-def _link_to_folder(path, elsewhere):
-    path.symlink_to(elsewhere)
-
-
-def _link_to_file(path, elsewhere):
-    path.symlink_to(elsewhere / "precious.txt")
-
-
-def _link_to_nothing(path, elsewhere):
-    path.symlink_to(elsewhere / "nothing")
-
-
-def _file(path, elsewhere):
-    path.write_text("precious\n")
-
-
-def _pipe(path, elsewhere):
-    os.mkfifo(path)
-
-
-FOREIGN = (
-    _folder,
-    _state_folder,
-    _listed_folder,
-    _link_to_folder,
-    _link_to_file,
-    _link_to_nothing,
-    _file,
-    _pipe,
-)
+#: What is made at a path, which may lead to another folder.
+FOREIGN = {
+    "folder": lambda path, elsewhere: _file(path / PRECIOUS),
+    "state folder": lambda path, elsewhere: _file(path / "state" / PRECIOUS),
+    "listed folder": lambda path, elsewhere: _listed_folder(path),
+    "link to a folder": lambda path, elsewhere: path.symlink_to(elsewhere),
+    "link to a file": lambda path, elsewhere: path.symlink_to(elsewhere / PRECIOUS),
+    "link to nothing": lambda path, elsewhere: path.symlink_to(elsewhere / "nothing"),
+    "file": lambda path, elsewhere: _file(path),
+    "pipe": lambda path, elsewhere: os.mkfifo(path),
+}
 
 
 def entries(folder):
@@ -133,20 +109,16 @@ def entries(folder):
 def foreign(setting, name, make, options, over_results):
     folder = setting.bench.folder()
     elsewhere = folder.parent / "elsewhere"
-    elsewhere.mkdir(parents=True)
-    _folder(elsewhere / "unfinished", None)
-    (elsewhere / "precious.txt").write_text("precious")
+    _file(elsewhere / "unfinished" / PRECIOUS)
+    _file(elsewhere / PRECIOUS)
     if over_results:
         shutil.copytree(setting.old_folder, folder)
     else:
         folder.mkdir()
     make(folder / name, elsewhere)
     before = entries(folder.parent)
-    command = (
-        ("run", "--restart", folder)
-        if "--restart" in options
-        else ("run", setting.case, "-o", folder, *options)
-    )
+    given = ("--restart", folder) if "--restart" in options else (setting.case, "-o", folder, *options)
+    command = ("run", *given)
     line = one_line(setting.bench.run(*command, "-q"), 2)
     require("move it away" in line or "is not empty" in line, line)
     after = entries(folder.parent)
@@ -264,17 +236,12 @@ def process_trials(bench, n):
 
 def foreign_trials(bench, every=1):
     setting = Setting(bench)
-    k = 0
-    for name in RESERVED:
-        for make in FOREIGN:
-            for options in ((), ("--overwrite",), ("--restart",)):
-                for over_results in (False, True):
-                    if k % every == 0:
-                        yield Trial(
-                            f"{name}: {make.__name__[1:]}, {options}, {over_results}",
-                            lambda a=name, b=make, c=options, d=over_results: foreign(setting, a, b, c, d),
-                        )
-                    k += 1
+    kinds = itertools.product(RESERVED, FOREIGN, ((), ("--overwrite",), ("--restart",)), (False, True))
+    for name, what, options, over_results in itertools.islice(kinds, 0, None, every):
+        yield Trial(
+            f"{name}: {what}, {options}, {over_results}",
+            lambda a=name, b=FOREIGN[what], c=options, d=over_results: foreign(setting, a, b, c, d),
+        )
 
 
 def signal_trials(bench, names=STOPPING, kinds=("ramp", "triggered")):

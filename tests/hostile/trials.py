@@ -108,9 +108,8 @@ def listed(folder, find, prefix=""):
         path = find(prefix + name)
         require(path.is_file() and not path.is_symlink(), f"{prefix + name} is in the list, and missing")
         data = path.read_bytes()
-        require(
-            hashlib.sha256(data).hexdigest() == checksum, f"{prefix + name} is not what its checksum says"
-        )
+        sum_of_data = hashlib.sha256(data).hexdigest()
+        require(sum_of_data == checksum, f"{prefix + name} is not what its checksum says")
         if path.name == CHECKSUMS:
             contents |= listed(folder, find, prefix + name.removesuffix(CHECKSUMS))
         else:

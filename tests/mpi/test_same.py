@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What several processes find is what one finds: the files of a run byte by byte, energies to rounding."""
 
-import csv
 import signal
 
 import pytest
-from common import finished, require_done, require_same_bytes, run_json, wait_until_or_over
+from common import finished, require_done, require_same_bytes, rows_of, run_json, wait_until_or_over
 from conftest import send
 
 # Elements of 2 mm: a run takes a tenth of a second.
@@ -160,9 +159,7 @@ def write_case(folder, name):
 
 
 def energies(folder):
-    with open(folder / "energy.csv", encoding="utf-8", newline="") as stream:
-        rows = list(csv.reader(stream))[1:]
-    return [[float(value) for value in row] for row in rows]
+    return [[float(value) for value in row.values()] for row in rows_of(folder / "energy.csv")]
 
 
 def require_same(one, several, rounding=1e-13):
@@ -262,8 +259,7 @@ def test_a_sequence_of_several_processes(tmp_path, mpirun, loading):
     require_done(mpirun.alone("run", "case.toml", "-q", "-o", "alone"))
     first = {}
     for name in ("shared", "alone"):
-        with open(tmp_path / name / "events.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(tmp_path / name / "events.csv")
         assert len(rows) == 2
         first[name] = {key: float(value) for key, value in rows[0].items() if value}
     assert first["shared"] == pytest.approx(first["alone"], rel=1e-9)

@@ -6,20 +6,17 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from common import built, call
+import pytest
+import slipfront
+from common import built, call, require_done, sets
+from slipfront.running import flattened
 
 # A few hundredths of a second.
 CASE = """\
 title = "coarse"
-
-[plate]
-element_size_m = 5e-3
-
-[event]
-kind = "left"
-
-[output]
-snapshot_times_s = [20e-6, 60e-6]
+plate.element_size_m = 5e-3
+event.kind = "left"
+output.snapshot_times_s = [20e-6, 60e-6]
 """
 
 
@@ -27,7 +24,24 @@ def program(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     return call(built(), *arguments, cwd=cwd)
 
 
-def write_case(folder: Path, text: str = CASE) -> Path:
+def write_case(folder: Path, case: str | dict = CASE) -> Path:
+    """A case's text, or its tables, as a file."""
+    text = "".join(f"{key} = {value}\n" for key, value in flattened(case)) if isinstance(case, dict) else case
     file = folder / "case.toml"
     file.write_text(text, encoding="utf-8")
     return file
+
+
+def results_of(folder: Path, case: str | dict = CASE, *settings: str) -> Path:
+    """The folder of the program's run of a case."""
+    require_done(program("run", write_case(folder, case), "-q", "-o", "out", *sets(*settings), cwd=folder))
+    return folder / "out"
+
+
+def refused(work, kind: type[slipfront.Error] = slipfront.Error) -> str:
+    """The one line with which a call is refused."""
+    with pytest.raises(kind) as error:
+        work()
+    told = str(error.value)
+    assert told.encode() and "\n" not in told
+    return told

@@ -42,23 +42,8 @@ def energy_rows(n: int = 6) -> list[list[float]]:
         strain, kinetic = 380 - 101 * share, 1e-5 + 2 * share
         friction, damping, top, coupling, landing = (a * share for a in (-90.0, -10.0, 0.8, 0.2, -1e-4))
         imbalance = 5e-10 if k > 0 else 0.0
-        rows.append(
-            [
-                250e-6 * share,
-                strain,
-                kinetic,
-                0,
-                top,
-                0,
-                0,
-                friction,
-                landing,
-                damping,
-                0,
-                coupling,
-                imbalance,
-            ]
-        )
+        works = [top, 0, 0, friction, landing, damping, 0, coupling]
+        rows.append([250e-6 * share, strain, kinetic, 0, *works, imbalance])
     return rows
 
 
@@ -82,13 +67,8 @@ def speed_m_per_s(x_m: np.ndarray, origin_m: float, direction: int) -> np.ndarra
     run = np.abs(x_m - origin_m)
     lag = 1 - 0.45 * np.exp(-run / 0.05) if origin_m < 0.1 or origin_m > 0.16 else 1.0
     wiggle = 1 + 0.01 * np.sin(2 * np.pi * run / 0.004)
-    return (
-        WAVE_SPEEDS["c_L_m_per_s"]
-        * (0.5 + 0.75 * (r / 1.3) ** 4)
-        * (1.2 if direction < 0 else 0.85)
-        * lag
-        * wiggle
-    )
+    of_ratio = 0.5 + 0.75 * (r / 1.3) ** 4
+    return WAVE_SPEEDS["c_L_m_per_s"] * of_ratio * (1.2 if direction < 0 else 0.85) * lag * wiggle
 
 
 def make_front(
@@ -111,9 +91,8 @@ def make_front(
     for k in range(len(path)):
         undefined = abs(path[k] - origin_m) < near or p_s[k] <= 0
         speed = "" if k in (0, len(path) - 1) else v[k]
-        dynamic = (
-            ["", "", "", "", "", ""] if undefined else [t_d[k], p_d[k], MU_S * p_r[k], p_r[k], u_s[k], u_r[k]]
-        )
+        known = [t_d[k], p_d[k], MU_S * p_r[k], p_r[k], u_s[k], u_r[k]]
+        dynamic = [""] * len(known) if undefined else known
         kind = "path_end" if speed == "" else "front"
         rows.append([front_id, path[k], onset[k], direction, speed, t_s[k], p_s[k], *dynamic, kind])
     return rows

@@ -78,12 +78,6 @@ def test_the_lines_of_cases_shown_are_in_their_files():
         assert f"figures/example_{page.stem.replace('-', '_')}.png" in text
 
 
-def test_a_broken_link_is_found(tmp_path):
-    page = tmp_path / "page.md"
-    page.write_text("# One `two`\n[a](#one-two) [b](#three) [c](other.md) [d](page.md#one-two)\n")
-    assert broken_links(page) == ["#three", "other.md"]
-
-
 def test_every_problem_has_its_page_its_picture_and_its_row():
     problems = (ROOT / "verification/verification.cpp").read_text(encoding="utf-8")
     assert sorted(re.findall(r'Verification\{"(\w+)"', problems)) == PROBLEMS

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import re
 
 import numpy as np
 import pytest
 import slipfront
-from common import ROOT
+from common import ROOT, rows_of
+from package_cases import refused as one_refusal
 from slipfront import _core, gauges, gauges_command, tip_fit
 
 PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180.0}
@@ -47,12 +47,11 @@ def test_a_tip_without_noise_is_found(case, y_m, direction):
     assert fit.Gamma_J_per_m2 == pytest.approx(GAMMA, rel=1e-4)
     assert fit.speed_m_per_s == pytest.approx(SPEED, rel=1e-4)
     assert fit.tip_s == pytest.approx(TIP_S, abs=1e-9)
-    assert fit.offset["xx"] == pytest.approx(2e-4, rel=1e-3) and fit.step["xy"] == pytest.approx(
-        -4e-5, rel=1e-2
-    )
+    assert fit.offset["xx"] == pytest.approx(2e-4, rel=1e-3)
+    assert fit.step["xy"] == pytest.approx(-4e-5, rel=1e-2)
 
 
-@pytest.mark.parametrize("noise, low_pass_Hz", [(1e-6, None), (5e-6, None), (2e-5, None), (5e-6, 200e3)])
+@pytest.mark.parametrize("noise, low_pass_Hz", [(1e-6, None), (2e-5, None), (5e-6, 200e3)])
 def test_errors_are_those_of_the_scatter(noise, low_pass_Hz):
     """Of many records with noise, each estimate is off by its error: the mean square of the quotient is 1."""
     records = [record(noise=noise, seed=k).prepared(low_pass_Hz=low_pass_Hz) for k in range(30)]
@@ -80,6 +79,7 @@ def test_a_given_speed_is_kept():
     fit = slipfront.fit_tip(record(noise=1e-6), EQUAL, speed_m_per_s=SPEED)
     assert fit.speed_m_per_s == SPEED and np.isnan(fit.speed_error_m_per_s)
     free = slipfront.fit_tip(record(noise=1e-6), EQUAL)
+    assert free.doubts == []
     assert fit.Gamma_error_J_per_m2 < free.Gamma_error_J_per_m2
 
 
@@ -107,12 +107,10 @@ def test_two_passages_and_speeds_of_gauges():
     ],
 )
 def test_times_at_neighbours_that_make_another_speed(late_us, y_m, doubts):
-    shown = [
-        dataclasses.replace(
-            record(tip_s=1e-6 * (30 + late) + x_m / 900, x_m=x_m, noise=1e-6), name=name, y_m=y_m
-        )
-        for name, x_m, late in zip("ABC", (0.0, 0.02, 0.04), late_us, strict=True)
-    ]
+    shown = []
+    for name, x_m, late in zip("ABC", (0.0, 0.02, 0.04), late_us, strict=True):
+        gauge = record(tip_s=1e-6 * (30 + late) + x_m / 900, x_m=x_m, noise=1e-6)
+        shown.append(dataclasses.replace(gauge, name=name, y_m=y_m))
     for fit, speeds in zip(slipfront.fit_tips(shown, EQUAL), doubts, strict=True):
         assert len(fit.doubts) == len(speeds)
         for doubt, speed in zip(fit.doubts, speeds, strict=True):
@@ -147,12 +145,8 @@ def test_arms_at_wrong_places_turn_the_sign_of_K():
 @pytest.mark.parametrize("parts", [("xx",), ("xx", "yy"), ("xy",)])
 def test_fewer_components_are_enough(parts):
     whole = record()
-    fit = slipfront.fit_tip(
-        dataclasses.replace(whole, values={p: whole.values[p] for p in parts}),
-        EQUAL,
-        tip_s=TIP_S,
-        direction=1,
-    )
+    fewer = dataclasses.replace(whole, values={p: whole.values[p] for p in parts})
+    fit = slipfront.fit_tip(fewer, EQUAL, tip_s=TIP_S, direction=1)
     assert fit.Gamma_J_per_m2 == pytest.approx(GAMMA, rel=1e-3)
 
 
@@ -191,7 +185,7 @@ def test_a_record_of_something_else_is_doubted():
 
 
 @pytest.mark.parametrize("smooth", [0.0, 4.0])
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_gauge_that_no_front_passes(smooth, seed):
     fit = slipfront.fit_tip(noise_alone(seed=seed, smooth=smooth), EQUAL)
     assert not fit.has_tip and fit.direction == 0
@@ -237,18 +231,12 @@ def of_material(**factors):
         (scaled(time=1e-6), EQUAL, "check the units of strain or stress, modulus and y"),
         (scaled(time=1e-3), EQUAL, "no front passes"),
         (scaled(time=1e6), EQUAL, "check the units of y and time"),
+        (scaled(strain=100.0), EQUAL, "check its units"),  # numbers of percent
+        (scaled(strain=0.01), EQUAL, "e-07, not from 1e-06 to 0.02: check the units of strain"),
     ],
 )
 def test_wrong_units_are_doubted(gauge, bodies, doubt):
-    assert doubt in "; ".join(slipfront.fit_tip(gauge, bodies).doubts)
-
-
-def test_strain_in_percent():
-    """Numbers of percent are a hundred times as large."""
-    assert "check its units" in "; ".join(slipfront.fit_tip(scaled(strain=100.0), EQUAL).doubts)
-    (doubt,) = slipfront.fit_tip(scaled(strain=0.01), EQUAL).doubts
-    assert re.fullmatch("strain is 6.*e-07, not from 1e-06 to 0.02: check the units of strain", doubt)
-    assert slipfront.fit_tip(scaled(), EQUAL).doubts == []
+    assert doubt in "; ".join(slipfront.fit_tip(gauge, bodies, direction=1).doubts)
 
 
 def record_file(name):
@@ -286,7 +274,7 @@ def test_arms_at_places_of_their_own(tmp_path, name, arms_mm):
         return
     table, picture = tmp_path / "fits.csv", tmp_path / "fits.png"
     assert gauges_command.main([str(file), *OPTIONS, "-o", str(table), "--figure", str(picture)]) == 0
-    (row,) = csv.DictReader(table.read_text().splitlines()[1:])
+    (row,) = rows_of(table)
     assert abs(float(row["step_strain_xx"])) < 5e-6 and row["residual_xx"] == "" and picture.exists()
 
 
@@ -324,12 +312,8 @@ def test_what_a_record_does_where_no_tip_is_found():
     (gauge,) = record_file("cohesive_zone_14mm.csv")
     fit = slipfront.fit_tip(gauge, EQUAL)
     assert not fit.has_tip
-    assert re.fullmatch(
-        "no tip is found, though xy falls by 151 ustrain, half of it within 20.* us: a tip's field fits by "
-        r".* errors, 5 are needed. Perhaps the cohesive zone is longer than the gauge is high \(give r_min_m "
-        r".*\), or the front is faster than 1233.* m/s \(its field is another\)",
-        fit.doubts[0],
-    )
+    told = "no tip is found, though xy falls by 151 ustrain, half of it within 20.* us: .*, 5 are needed. "
+    assert re.match(told + r".*\(give r_min_m .*\), or the front is faster than 1233", fit.doubts[0])
     beyond = slipfront.fit_tip(gauge, EQUAL, r_min_m=20e-3, r_max_m=60e-3, speed_m_per_s=900)
     assert beyond.Gamma_J_per_m2 == pytest.approx(1.1, rel=0.15)
 
@@ -350,8 +334,7 @@ def passed(gauge, smooth_s=None, leak_s=None):
 
 
 @pytest.mark.parametrize(
-    "given, word, cut_off",
-    [({"smooth_s": 5.3e-6}, "low-pass", 30e3), ({"leak_s": 8e-6}, "high-pass", 20e3)],
+    "given, word, cut_off", [({"smooth_s": 5.3e-6}, "low-pass", 30e3), ({"leak_s": 8e-6}, "high-pass", 20e3)]
 )
 def test_amplifiers_are_doubted(given, word, cut_off):
     """The doubt has the cut-off, and the Gamma that it hides."""
@@ -366,7 +349,8 @@ def clipped(gauge, share):
     """At a share of the peak of each component about its median."""
     ends = {p: (np.median(v), share * gauge.peak(p)) for p, v in gauge.values.items()}
     values = {
-        p: np.clip(v, ends[p][0] - ends[p][1], ends[p][0] + ends[p][1]) for p, v in gauge.values.items()
+        p: np.clip(v, a - b, a + b)
+        for (p, v), (a, b) in zip(gauge.values.items(), ends.values(), strict=True)
     }
     return dataclasses.replace(gauge, values=values)
 
@@ -452,6 +436,9 @@ def test_forms_of_records(tmp_path):
     assert not read.is_strain and list(read.values["xy"]) == [1e6, 2e6]
 
 
+ROSETTE = "x_m,y_m,time_s,strain_0,strain_45,strain_90"
+
+
 @pytest.mark.parametrize(
     "text, why",
     [
@@ -465,14 +452,8 @@ def test_forms_of_records(tmp_path):
         ("x_m,y_m,time_s,strain_0,strain_180,strain_90\n0,1,0,1,1,1\n", "do not determine the strain"),
         ("x_m,y_m,time_s,strain_xx\n0,1,0,\n", "no gauge has values"),
         ("x_m,y_m,time_s,strain_xx\n0,1,,1\n", "'time_s' has an empty cell"),
-        (
-            "x_m,y_m,time_s,strain_0,strain_45,strain_90,x_30_m\n0,1,0,1,1,1,0\n",
-            "'x_30' is the place of no arm",
-        ),
-        (
-            "x_m,y_m,time_s,strain_0,strain_45,strain_90,y_0_m\n0,1,0,1,1,1,-1\n0,1,1,1,1,1,-1\n",
-            "on its side",
-        ),
+        (ROSETTE + ",x_30_m\n0,1,0,1,1,1,0\n", "'x_30' is the place of no arm"),
+        (ROSETTE + ",y_0_m\n0,1,0,1,1,1,-1\n0,1,1,1,1,1,-1\n", "on its side"),
         ("x_m,y_m,time_s,strain_xx\n0,1,0,1\n0,2,1,1\n", "is at more than one place"),
         ("x_m,y_m,time_s,strain_xx\n0,1,1,1\n0,1,1,1\n", "two times or more that ascend"),
         ("x_m,y_m,time_s,strain_xx\n0,0,1,1\n0,0,2,1\n", "y must be finite and not 0"),
@@ -580,19 +561,18 @@ def test_the_command(run, fits, tmp_path, capsys):
     assert gauges_command.main([str(run.folder), "-o", str(table), "--figure", str(picture)]) == 0
     out = capsys.readouterr().out.splitlines()
     assert out[0].startswith("SG1: front to +x passes at ") and out[-1] == f"figure: {picture}"
-    rows = list(csv.DictReader(table.read_text().splitlines()[1:]))
+    rows = rows_of(table)
     assert [float(row["Gamma_J_per_m2"]) for row in rows] == [f.Gamma_J_per_m2 for f in fits]
     assert picture.read_bytes().startswith(b"\x89PNG")
 
     records = tmp_path / "records.csv"
     gauge = slipfront.gauges_of(run)[0]
     columns = (gauge.time_s, *gauge.values.values())
-    text = ["x_m,y_m,time_s,strain_xx,strain_yy,strain_xy"]
-    text += [
-        f"{gauge.x_m},{gauge.y_m}," + ",".join(repr(float(v)) for v in row)
+    rows = [
+        f"{gauge.x_m},{gauge.y_m}," + ",".join(map(repr, map(float, row)))
         for row in zip(*columns, strict=True)
     ]
-    records.write_text("\n".join(text))
+    records.write_text("\n".join(["x_m,y_m,time_s,strain_xx,strain_yy,strain_xy", *rows]))
     assert gauges_command.main([str(records), "--compare", str(run.folder), "-o", str(table)]) == 0
     assert "misfit xx 0 %, yy 0 %, xy 0 %" in capsys.readouterr().out
     assert gauges_command.main([str(records), *OPTIONS, "--low-pass-hz", "3e5", "--zero-s", ",2e-5"]) == 0
@@ -601,34 +581,29 @@ def test_the_command(run, fits, tmp_path, capsys):
     late = ["--compare", run.folder, "--shift-s=-4e-6", "--within-s", "2e-6"]
     assert gauges_command.main([str(a) for a in (records, *late)]) == 0
     assert "end of its range, --within-s = 2e-06 s: " in capsys.readouterr().out
-    assert "up to --within-s = 5e-05 s; widen it, or move the records' clock by --shift-s, in s" in refused(
-        capsys, records, "--compare", run.folder, "--shift-s", "1"
-    )
-    assert "a record needs its bodies: give --youngs-modulus-pa, " in refused(capsys, records)
-    assert "a run has its own bodies; leave out --youngs-modulus-pa, --poissons-ratio" in refused(
-        capsys, run.folder, *OPTIONS
-    )
-    assert "names the gauge 'B'" in refused(capsys, records, *OPTIONS, "--shift-s", "B=1")
-    assert "--stress is of a run" in refused(capsys, records, *OPTIONS, "--stress")
-    assert "--zero-s is 1 to 2 s" in refused(capsys, records, *OPTIONS, "--zero-s", "1,2")
-    assert "--r-max-m is 0.001 m; it must be above --r-min-m, 0 m, and" in refused(
-        capsys, records, *OPTIONS, "--r-max-m", "1e-3"
-    )
-    assert "not replaced" in refused(capsys, run.folder, "-o", records)
-    assert "No such file" in refused(capsys, tmp_path / "none.csv", *OPTIONS)
+    of_record = (records, *OPTIONS)
+    for arguments, said in (
+        (
+            (records, "--compare", run.folder, "--shift-s", "1"),
+            "up to --within-s = 5e-05 s; widen it, or move the",
+        ),
+        ((records,), "a record needs its bodies: give --youngs-modulus-pa, "),
+        ((run.folder, *OPTIONS), "a run has its own bodies; leave out --youngs-modulus-pa, --poissons-ratio"),
+        ((*of_record, "--shift-s", "B=1"), "names the gauge 'B'"),
+        ((*of_record, "--stress"), "--stress is of a run"),
+        ((*of_record, "--zero-s", "1,2"), "--zero-s is 1 to 2 s"),
+        ((*of_record, "--r-max-m", "1e-3"), "--r-max-m is 0.001 m; it must be above --r-min-m, 0 m, and"),
+        ((run.folder, "-o", records), "not replaced"),
+        ((tmp_path / "none.csv", *OPTIONS), "No such file"),
+    ):
+        assert said in refused(capsys, *arguments)
 
 
 @pytest.mark.parametrize(
     "options, why",
     [
-        (
-            ["--within-s", "1e-6"],
-            "--within-s is an option of a comparison: give --compare DIR, or leave it out",
-        ),
-        (
-            ["--compare", "out", "--passages", "2"],
-            "--passages is an option of a fit: leave it out beside --compare",
-        ),
+        (["--within-s", "1e-6"], "--within-s is an option of a comparison: give --compare DIR, or"),
+        (["--compare", "out", "--passages", "2"], "--passages is an option of a fit: leave it out"),
         (["--compare", "out", "--plane", "strain"], "--plane is an option of a fit"),
         (["--zero-s", "1;2"], "'1;2' is not FROM,TO in s; give such as 0,20e-6"),
         (["--zero-s", "1"], "'1' is not FROM,TO in s"),
@@ -658,16 +633,15 @@ def test_the_command_says_where_no_front_passes(tmp_path, capsys):
     first, second, dead, *_ = capsys.readouterr().out.splitlines()
     assert dead == "dead: passed over: it has no values"
     assert first.startswith("SG1: front to +x") and second.startswith("quiet: no front passes: ")
-    found, quiet = csv.DictReader(table.read_text().splitlines()[1:])
+    found, quiet = rows_of(table)
     assert float(found["Gamma_J_per_m2"]) == pytest.approx(GAMMA, rel=1e-3)
     assert quiet["Gamma_J_per_m2"] == quiet["tip_s"] == "" and quiet["direction"] == "0"
     records.write_text("\n".join(row for row in rows if not row.startswith("SG1")))
     picture.unlink()
     assert gauges_command.main(said) == 0
     (again, _, note) = capsys.readouterr().out.splitlines()
-    assert (
-        again.startswith("quiet: no front passes: ") and note == f"{picture}: not drawn: no gauge has a fit"
-    )
+    assert again.startswith("quiet: no front passes: ")
+    assert note == f"{picture}: not drawn: no gauge has a fit"
     assert not picture.exists()
 
 
@@ -724,9 +698,7 @@ GIVEN = record()
     ],
 )  # fmt: skip
 def test_what_is_no_gauge_is_refused(work, why):
-    with pytest.raises(slipfront.Error, match=why) as error:
-        work()
-    assert "\n" not in str(error.value)
+    assert re.search(why, one_refusal(work))
 
 
 def test_the_field_of_a_tip():

@@ -140,10 +140,3 @@ def test_falls_are_stretches_of_five_millimetres_where_speed_falls_and_ratio_ris
     x = 1e3 * front.x_m[falls(run, front)]
     # The step up before 60.667 mm is none, the step down behind 70 mm is; the second stretch is too short.
     assert (x[0], x[-1]) == pytest.approx((60.667, 70.667), abs=0.01) and len(x) == 16
-
-
-def test_short_fronts_of_their_own_are_no_main_fronts(tmp_path):
-    write_run(tmp_path / "run", "spontaneous", 0.6, COLUMNS, 4, 4, 2)
-    run = open_run(tmp_path / "run")
-    assert [front.id for front in run.front_list] == [1, 2, 3, 4]
-    assert [front.id for front in main_fronts(run)] == [1, 2]

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 
 import numpy as np
 import pytest
 import slipfront
 from common import ROOT
+from package_cases import refused
 
 V_M_PER_S = 500.0  # onsets are a millionth of a second apart, or several
 TIME_S = 1e-6 * np.arange(61)
@@ -44,12 +46,7 @@ def assert_is_own(read, tolerance=1e-6, sign=1.0, shift_m=0.0, by_slip=False):
     assert np.allclose(found.t_s_Pa, sign * T_0 * (1 + found.x_m - shift_m), rtol=1e-6)
 
 
-def refusal(work):
-    with pytest.raises(slipfront.DataError) as error:
-        work()
-    told = str(error.value)
-    assert "\n" not in told
-    return told
+refusal = partial(refused, kind=slipfront.DataError)
 
 
 # ---- SEM2DPACK
@@ -226,16 +223,14 @@ def test_uguca_refuses_what_is_damaged(tmp_path):
         for nothing in ("", "\n"):
             assert f"{name}: empty" in told_of(name, lambda text, nothing=nothing: nothing)
     assert "time does not ascend" in told_of("run.time", lambda text: text.replace("1.0000000000e-06", "9"))
-    assert "beside the straight line" in told_of(
-        "run.coords", lambda text: text.replace(" 0.0000000000e+00", " 1", 1)
-    )
+    aside = told_of("run.coords", lambda text: text.replace(" 0.0000000000e+00", " 1", 1))
+    assert "beside the straight line" in aside
     assert "no entry 'folder_name'" in told_of("run.info", lambda text: text.replace("folder_name", "x"))
     assert "not a name and its value" in told_of("run.info", lambda text: text + "output_format\n")
     assert "not ascii, csv or binary" in told_of("run.info", lambda text: text.replace("ascii", "hdf5"))
     assert "of several ranks" in told_of("run.info", lambda text: text + "rank_description run.procs\n")
-    assert "61 times of 40 nodes take 9760" in told_of(
-        "run.info", lambda text: text.replace("ascii", "binary")
-    )
+    as_binary = told_of("run.info", lambda text: text.replace("ascii", "binary"))
+    assert "61 times of 40 nodes take 9760" in as_binary
     with pytest.raises(slipfront.CaseError, match="below is 'stiff'"):
         slipfront.read_uguca(info, below="stiff")
 
@@ -373,11 +368,8 @@ def test_seissol_refuses_what_is_damaged(tmp_path):
     assert "beside the straight line" in told_of(lambda text: text.replace("# x3\t-0.000", "# x3\t-0.001"))
     twice = refusal(lambda: slipfront.read_seissol_fault_receivers([*files, files[0]]))
     assert "two places are one" in twice
-    for given, said in (
-        ("one.dat", "files is 'one.dat'"),
-        ([], "files has 0 paths"),
-        (files[:1], "has 1 paths"),
-    ):
+    wrong = (("one.dat", "files is 'one.dat'"), ([], "files has 0 paths"), (files[:1], "has 1 paths"))
+    for given, said in wrong:
         with pytest.raises(slipfront.CaseError, match=said):
             slipfront.read_seissol_fault_receivers(given)
     with pytest.raises(slipfront.CaseError, match="component is 'x'"):

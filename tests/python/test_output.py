@@ -14,7 +14,7 @@ import sys
 import numpy as np
 import pytest
 import slipfront.command
-from common import ROOT, WITH_PACKAGE, call, refusal
+from common import WITH_PACKAGE, call, call_script, refusal
 from common import one_line as line_of
 from drawing.results import read_experiment
 from refusals import one_error, one_line
@@ -194,7 +194,7 @@ def test_a_folder_of_any_name_is_drawn(run):
 
 def test_pictures_of_verify_are_written_or_refused(tmp_path):
     def draw(results, figures):
-        return call(sys.executable, ROOT / "verification/figures.py", results, figures, env=WITH_PACKAGE)
+        return call_script("verification/figures.py", results, figures)
 
     refusal(draw(tmp_path, tmp_path / "figures"))
     assert not (tmp_path / "figures").exists()

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import shutil
 import sys
 
 import numpy as np
 import pytest
-from common import ROOT, WITH_PACKAGE, built, call, refusal, require_done
+from common import ROOT, WITH_PACKAGE, built, call, refusal, require_done, rows_of
 from drawing.results import read_experiment
 from package_cases import write_case
 from refusals import one_line
@@ -27,11 +26,6 @@ def onsets(tmp_path):
     return file
 
 
-def rows(file):
-    with open(file, newline="") as stream:
-        return list(csv.DictReader(line for line in stream if not line.startswith("#")))
-
-
 def test_fronts_of_an_experiment(onsets, tmp_path, capsys):
     out = tmp_path / "fronts.csv"
     assert main(["fronts", str(onsets), "-o", str(out), "--c-l-m-per-s", "2000"]) == 0
@@ -45,7 +39,7 @@ def test_fronts_of_an_experiment(onsets, tmp_path, capsys):
         "--l-star-m 0.002, --arrest-time-s 2e-05, --min-length-m 0.004; intervals of speeds: times right to "
         "half of 1e-06 s",
     ]
-    found = rows(out)
+    found = rows_of(out)
     speeds = ["speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s"]
     columns = ["front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", *speeds, "v_over_c_L"]
     assert list(found[0]) == columns

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import slipfront
 import slipfront.sweep
-from package_cases import CASE
+from package_cases import CASE, refused
 from slipfront import _core
 
 X_M = np.linspace(0, 0.2, 101)
@@ -30,27 +30,17 @@ ITSELF: list = []
 ITSELF.append(ITSELF)
 
 
-def refusal(work):
-    """The text of the exception that `work` raises."""
-    with pytest.raises(slipfront.Error) as error:
-        work()
-    told = str(error.value)
-    assert told and "\n" not in told
-    assert told.encode()
-    return told
-
-
 @pytest.mark.parametrize("name", [LONE, "a\0b", "x" * 300, 5, None, 1.5, b"out", [], object()])
 def test_what_is_no_path_is_refused(name):
-    assert "folder is " in refusal(lambda: slipfront.open(name))
-    assert "output is " in refusal(lambda: slipfront.resume(name))
-    assert "case is " in refusal(lambda: slipfront.run(name))
-    assert "case is " in refusal(lambda: slipfront.info(name))
+    assert "folder is " in refused(lambda: slipfront.open(name))
+    assert "output is " in refused(lambda: slipfront.resume(name))
+    assert "case is " in refused(lambda: slipfront.run(name))
+    assert "case is " in refused(lambda: slipfront.info(name))
     if name is not None:
-        assert "output is " in refusal(lambda: slipfront.run(CASE, output=name))
-    assert "folder is " in refusal(lambda: slipfront.sweep.open_sweep(name))
-    assert "case is " in refusal(lambda: slipfront.sweep.run(name, {"friction.mu_k": [1]}, "out"))
-    assert "output is " in refusal(lambda: slipfront.sweep.run("case.toml", {"friction.mu_k": [1]}, name))
+        assert "output is " in refused(lambda: slipfront.run(CASE, output=name))
+    assert "folder is " in refused(lambda: slipfront.sweep.open_sweep(name))
+    assert "case is " in refused(lambda: slipfront.sweep.run(name, {"friction.mu_k": [1]}, "out"))
+    assert "output is " in refused(lambda: slipfront.sweep.run("case.toml", {"friction.mu_k": [1]}, name))
 
 
 @pytest.mark.parametrize(
@@ -75,9 +65,9 @@ def test_what_is_no_path_is_refused(name):
     ],
 )
 def test_what_no_case_may_hold_is_refused(case, said):
-    assert said in refusal(lambda: slipfront.info(case))
+    assert said in refused(lambda: slipfront.info(case))
     if isinstance(case, dict):
-        assert said in refusal(lambda: slipfront.run(CASE, case))
+        assert said in refused(lambda: slipfront.run(CASE, case))
 
 
 @pytest.mark.parametrize(
@@ -100,7 +90,7 @@ def test_what_no_case_may_hold_is_refused(case, said):
     ],
 )
 def test_options_of_a_run(arguments, said):
-    assert said in refusal(lambda: slipfront.run(CASE, **arguments))
+    assert said in refused(lambda: slipfront.run(CASE, **arguments))
 
 
 @pytest.mark.parametrize(
@@ -140,7 +130,7 @@ def test_options_of_a_run(arguments, said):
     ],
 )
 def test_arrays_and_options_of_fronts(given, said):
-    assert said in refusal(lambda: slipfront.find_fronts(**{"x_m": X_M, "onset_s": ONSET_S} | given))
+    assert said in refused(lambda: slipfront.find_fronts(**{"x_m": X_M, "onset_s": ONSET_S} | given))
 
 
 @pytest.mark.parametrize(
@@ -158,41 +148,41 @@ def test_arrays_and_options_of_fronts(given, said):
     ],
 )
 def test_histories(history, said):
-    assert said in refusal(lambda: slipfront.find_fronts_in_history(history, TRACTIONS))
-    assert said in refusal(lambda: any_events.outcome(CASE, history, TRACTIONS))
-    assert refusal(lambda: slipfront.find_fronts_in_history(history))
+    assert said in refused(lambda: slipfront.find_fronts_in_history(history, TRACTIONS))
+    assert said in refused(lambda: any_events.outcome(CASE, history, TRACTIONS))
+    assert refused(lambda: slipfront.find_fronts_in_history(history))
 
 
 @pytest.mark.parametrize("given", [5, "x", {}, {"t_s_Pa": np.ones(3)}, [], "friction.mu_k=1", [1]])
 def test_tractions_and_changes_are_dictionaries(given):
-    assert "tractions" in refusal(lambda: slipfront.find_fronts_in_history(HISTORY, given))
-    assert "tractions" in refusal(lambda: any_events.outcome(CASE, HISTORY, given))
+    assert "tractions" in refused(lambda: slipfront.find_fronts_in_history(HISTORY, given))
+    assert "tractions" in refused(lambda: any_events.outcome(CASE, HISTORY, given))
     if not isinstance(given, dict):
-        assert "it must be a dictionary" in refusal(lambda: slipfront.run(CASE, given))
+        assert "it must be a dictionary" in refused(lambda: slipfront.run(CASE, given))
 
 
 @pytest.mark.parametrize("places", [HISTORY["x_m"][::-1], HISTORY["x_m"] + 1])
 def test_tractions_have_the_places_of_the_history(places):
     given = TRACTIONS | {"x_m": places}
-    assert "tractions['x_m'] differs" in refusal(lambda: slipfront.find_fronts_in_history(HISTORY, given))
-    assert "tractions['x_m'] differs" in refusal(lambda: any_events.outcome(CASE, HISTORY, given))
+    assert "tractions['x_m'] differs" in refused(lambda: slipfront.find_fronts_in_history(HISTORY, given))
+    assert "tractions['x_m'] differs" in refused(lambda: any_events.outcome(CASE, HISTORY, given))
 
 
 def test_criteria_need_their_columns():
     fronts = slipfront.find_fronts(X_M, ONSET_S)
-    assert "fronts has no 'p_d_Pa'" in refusal(lambda: slipfront.criteria(fronts.drop_vars("p_d_Pa")))
+    assert "fronts has no 'p_d_Pa'" in refused(lambda: slipfront.criteria(fronts.drop_vars("p_d_Pa")))
     for given in (5, None, {}, "x"):
-        assert "fronts has no 't_s_Pa'" in refusal(lambda given=given: slipfront.criteria(given))
+        assert "fronts has no 't_s_Pa'" in refused(lambda given=given: slipfront.criteria(given))
     columns = {name: [1.0, 2.0] for name in POINT_NAMES} | {"p_s_Pa": [1.0]}
-    assert "differ in length: t_s_Pa 2, p_s_Pa 1" in refusal(lambda: slipfront.criteria(columns))
+    assert "differ in length: t_s_Pa 2, p_s_Pa 1" in refused(lambda: slipfront.criteria(columns))
 
 
 @pytest.mark.parametrize(
     "series", [5, None, "ab", {}, [5], [(X_M,)], [(X_M, X_M, X_M)], [("a", "b")], [([1, 2], [1])]]
 )
 def test_series(series):
-    refusal(lambda: slipfront.fit_exponential(series))
-    refusal(lambda: slipfront.spread_at_equal_x(series))
+    refused(lambda: slipfront.fit_exponential(series))
+    refused(lambda: slipfront.spread_at_equal_x(series))
 
 
 @pytest.mark.parametrize(
@@ -200,14 +190,14 @@ def test_series(series):
 )
 def test_options_of_the_fit(options):
     (name,) = options
-    assert name in refusal(lambda: slipfront.fit_exponential([(X_M, X_M)], **options))
+    assert name in refused(lambda: slipfront.fit_exponential([(X_M, X_M)], **options))
 
 
 def test_events_are_outcomes():
     for given in (5, None, "x", [5], [None]):
-        assert "outcome" in refusal(lambda given=given: any_events.collapse(given)).lower()
+        assert "outcome" in refused(lambda given=given: any_events.collapse(given)).lower()
     four = dict.fromkeys(("spontaneous", "left", "right", "spontaneous_mu_k_1"), "left.toml")
-    said = refusal(lambda: any_events.scorecard(**four))
+    said = refused(lambda: any_events.scorecard(**four))
     assert said == "spontaneous is 'left.toml'; it must be a slipfront.Event"
 
 
@@ -215,8 +205,8 @@ def test_events_are_outcomes():
     "size_m", ["a", None, np.nan, np.inf, 0, -1, [1], 10**400, True, np.array([1.0, 2.0])]
 )
 def test_sizes(size_m):
-    assert "element_size_m is " in refusal(lambda: slipfront.stable_step_s(size_m))
-    assert "pressure_Pa is " in refusal(
+    assert "element_size_m is " in refused(lambda: slipfront.stable_step_s(size_m))
+    assert "pressure_Pa is " in refused(
         lambda: slipfront.well_posedness(
             {"law": "coulomb"}, pressure_Pa=size_m, element_size_m=1e-3, longest_wavelength_m=0.2
         )
@@ -236,24 +226,24 @@ def test_fronts_without_a_column(tmp_path):
     whole = file.read_text()
     for column in ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s"):
         file.write_text(re.sub(rf"\b{column}\b", "other", whole, count=1))
-        assert f"no column '{column}'" in refusal(lambda: slipfront.open(run.folder).fronts)
+        assert f"no column '{column}'" in refused(lambda: slipfront.open(run.folder).fronts)
 
 
 def test_bytes_of_a_name_that_are_no_text_are_told(tmp_path):
     """A name of a file system's own bytes may be used, and is told with signs that can be printed."""
-    said = refusal(lambda: slipfront.open(tmp_path / "a\udc80b"))
+    said = refused(lambda: slipfront.open(tmp_path / "a\udc80b"))
     assert said == f"{tmp_path}/a?b: no such folder; name the output folder of a run"
     run = slipfront.run(CASE, output=tmp_path / "c\udc80d")
     assert slipfront.open(run.folder).status == "complete"
     (run.folder / "energy.csv").unlink()
-    assert "c?d/energy.csv: missing" in refusal(lambda: slipfront.open(run.folder).energies)
+    assert "c?d/energy.csv: missing" in refused(lambda: slipfront.open(run.folder).energies)
 
 
 def test_a_working_folder_that_is_gone(tmp_path, monkeypatch):
     (tmp_path / "gone").mkdir()
     monkeypatch.chdir(tmp_path / "gone")
     (tmp_path / "gone").rmdir()
-    assert refusal(lambda: slipfront.run(CASE)).startswith("case: the working folder is gone")
+    assert refused(lambda: slipfront.run(CASE)).startswith("case: the working folder is gone")
 
 
 def test_no_room_for_a_temporary_folder(monkeypatch):
@@ -269,7 +259,7 @@ def test_a_fit_is_a_function_of_numbers_and_arrays():
     assert isinstance(fit(1), float)
     assert np.array_equal(fit([[1, 2], [1, 1]]), [[fit(1), fit(2)], [fit(1), fit(1)]])
     for given in ("a", None, 1j):
-        assert "x " in refusal(lambda given=given: fit(given))
+        assert "x " in refused(lambda given=given: fit(given))
 
 
 # --- Printed

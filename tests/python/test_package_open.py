@@ -3,27 +3,23 @@
 
 from __future__ import annotations
 
-import csv
-
 import h5py
 import numpy as np
 import pytest
 import slipfront
 import xarray as xr
-from package_cases import CASE, program, write_case
+from common import rows_of
+from package_cases import CASE, results_of, write_case
 from slipfront.units import unit_of
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    place = tmp_path_factory.mktemp("opened")
-    assert program("run", write_case(place), "-q", "-o", "out", cwd=place).returncode == 0
-    return place / "out"
+    return results_of(tmp_path_factory.mktemp("opened"))
 
 
 def columns(file):
-    with open(file, newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(file)
     texts = {"speed_kind"} & rows[0].keys()
     found = {name: np.array([r[name] for r in rows]) for name in texts}
     return found | {
@@ -142,9 +138,8 @@ def test_units_of_names():
 
 
 def test_probes(tmp_path):
-    case = CASE + '\n[probes]\nx_m = [0.05, 0.1]\ny_m = [0.01, 0.02]\nnames = ["left", "middle"]\n'
-    assert program("run", write_case(tmp_path, case), "-q", "-o", "out", cwd=tmp_path).returncode == 0
-    probes = slipfront.open(tmp_path / "out").probes
+    case = CASE + 'probes = {x_m = [0.05, 0.1], y_m = [0.01, 0.02], names = ["left", "middle"]}\n'
+    probes = slipfront.open(results_of(tmp_path, case)).probes
     assert list(probes.probe.values) == ["left", "middle"]
     assert probes.x_m.values.tolist() == [0.05, 0.1]
     with h5py.File(tmp_path / "out/probes.h5") as file:

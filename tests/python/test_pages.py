@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from common import ROOT, WITH_PACKAGE, call, one_line, refusal
+from common import ROOT, WITH_PACKAGE, call, call_script, one_line, refusal
 from synthetic import write_checksums
 from synthetic_study import write_open_choices
 
@@ -32,13 +32,12 @@ class Pages:
     page: Path
     marks: list[str]
 
-    def run(self, **options) -> subprocess.CompletedProcess:
-        with_package = {"env": WITH_PACKAGE} | options
-        return call(sys.executable, ROOT / self.script, self.results, *self.target, **with_package)
+    def run(self) -> subprocess.CompletedProcess:
+        return call_script(self.script, self.results, *self.target)
 
-    def refused(self, *says: str, code: int = 2, **options) -> None:
+    def refused(self, *says: str, code: int = 2, run=None) -> None:
         before = self.page.read_bytes()
-        done = self.run(**options)
+        done = (run or self.run)()
         line = one_line(done, code)
         assert not done.stdout and line.startswith(f"{Path(self.script).name}: error: ")
         for part in says:
@@ -111,17 +110,11 @@ def test_the_tables_of_the_open_choices(tmp_path):
     fit = "0.80 [0.70, 0.90] | 2.00 [1.90, 2.10] | 3.00 [2.90, 3.10]"
     row = f"does not | none | 1.20; 60, 40 % | 0.060, 75 % | {fit} | 12, 15, 18 % |"
     assert f"| added: 10 mm, 20, held | 156 | {row}" in lines
-    assert (
-        f"| **chosen**, added: 10 mm, 10, 5 us | 156 | {row}".replace("does not | none", "holds | 2.4; 0.6")
-        in lines
-    )
-    sizes = [
-        line.split(" | ")[0]
-        for line in lines
-        if " mm | " in line and line.startswith(("| 0.5", "| 1", "| 2"))
-    ]
-    assert sizes == ["| 0.5 mm", "| 1 mm", "| 2 mm"]
-    assert next(line for line in lines if line.startswith("| 2 mm")).endswith("| C11, C25 |")
+    chosen = row.replace("does not | none", "holds | 2.4; 0.6")
+    assert f"| **chosen**, added: 10 mm, 10, 5 us | 156 | {chosen}" in lines
+    of_sizes = [line for line in lines if " mm | " in line and line.startswith(("| 0.5", "| 1", "| 2"))]
+    assert [line.split(" | ")[0] for line in of_sizes] == ["| 0.5 mm", "| 1 mm", "| 2 mm"]
+    assert of_sizes[-1].endswith("| C11, C25 |")
     assert "| points in the paper's band | 80 % (70 to 90) | - |" in lines
     assert "| spread of V_tip at equal t_d/p_d | 4 % (2 to 5) | - |" in lines
     assert "| C18c holds | 1 of 2 | - |" in lines
@@ -211,18 +204,22 @@ def test_a_page_that_is_no_file_is_refused(pages):
 
 
 def test_a_full_disk_leaves_the_page_as_it_was(pages):
-    pages.refused(
-        "File too large",
-        code=1,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
-        env={**WITH_PACKAGE, "PYTHONDONTWRITEBYTECODE": "1"},
-    )
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+    def run():
+        command = (sys.executable, ROOT / pages.script, pages.results, *pages.target)
+        return call(*command, preexec_fn=limit, env=WITH_PACKAGE | {"PYTHONDONTWRITEBYTECODE": "1"})
+
+    pages.refused("File too large", code=1, run=run)
 
 
 @pytest.mark.parametrize(
     "script",
     [
-        *(f"{PAPER}/{name}.py" for name in ("energy_criterion", "open_choices_page", "scorecard_page")),
+        f"{PAPER}/energy_criterion.py",
+        f"{PAPER}/open_choices_page.py",
+        f"{PAPER}/scorecard_page.py",
         "verification/pages.py",
     ],
 )

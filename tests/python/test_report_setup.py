@@ -4,18 +4,17 @@
 from __future__ import annotations
 
 import base64
-import json
 import math
 import re
 
 import numpy as np
 import pytest
 import slipfront
-from common import require_done, run_json, sets
-from package_cases import CASE, program, write_case
+from common import require_done, run_json
+from package_cases import CASE, program, results_of, write_case
+from report_pages import data_of, page_of
 from slipfront.opened import OpenRun, open_run
 from slipfront.report import setup
-from slipfront.report.command import main
 from slipfront.report.run_data import wave_speeds
 from slipfront.report.sketch import sketch
 from slipfront.units import attributes, engineering, name_of, quantity
@@ -23,11 +22,13 @@ from slipfront.units import attributes, engineering, name_of, quantity
 T_PA, P_PA = 2.4e6, 4e6
 PAIR = """\
 title = "polycarbonate on Homalite"
-[plate]
-width_m = 0.15
-height_m = 0.06
-element_size_m = 3e-3
-corner = "none"
+plate = {width_m = 0.15, height_m = 0.06, element_size_m = 3e-3, corner = "none"}
+loading.method = "prestress"
+prestress = {t_Pa = 2.4e6, p_Pa = 4e6}
+event = {kind = "left", trigger_zone_m = 30e-3, trigger_amount = 2, trigger_ramp_s = 2e-6}
+time.end_s = 100e-6
+output.snapshot_times_s = [0.0, 50e-6]
+probes = {x_m = [0.075, 0.0765], y_m = [0.0, -0.0015], names = ["interface", "base"]}
 [material]
 youngs_modulus_Pa = 2.4e9
 poissons_ratio = 0.38
@@ -41,11 +42,6 @@ poissons_ratio = 0.35
 density_kg_per_m3 = 1230
 stiffness_damping_s = 1e-8
 bottom = "absorbing"
-[loading]
-method = "prestress"
-[prestress]
-t_Pa = 2.4e6
-p_Pa = 4e6
 [friction]
 law = "slip_weakening"
 mu_s = 0.7
@@ -53,53 +49,31 @@ mu_k = 0.45
 d_c_m = 10e-6
 regularisation = "pressure"
 relaxation_time_s = 2e-6
-[event]
-kind = "left"
-trigger_zone_m = 30e-3
-trigger_amount = 2
-trigger_ramp_s = 2e-6
-[time]
-end_s = 100e-6
-[output]
-snapshot_times_s = [0.0, 50e-6]
-[probes]
-x_m = [0.075, 0.0765]
-y_m = [0.0, -0.0015]
-names = ["interface", "base"]
 """
 TABLE = "x_m,t_Pa,p_Pa\n0,2.0e6,4e6\n0.15,2.4e6,5e6\n"
 
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory):
-    place = tmp_path_factory.mktemp("pair")
-    require_done(program("run", write_case(place, PAIR), "-q", "-o", "out", cwd=place))
-    return place / "out"
+    return results_of(tmp_path_factory.mktemp("pair"), PAIR)
 
 
 @pytest.fixture(scope="module")
 def table(tmp_path_factory):
     place = tmp_path_factory.mktemp("table")
     (place / "loads.csv").write_text(TABLE)
-    uniform = "t_Pa = 2.4e6\np_Pa = 4e6\n"
-    case = write_case(place, PAIR.replace(uniform, 'file = "loads.csv"\n'))
-    require_done(program("run", case, "-q", "-o", "out", cwd=place))
-    return place / "out"
+    return results_of(place, PAIR.replace("{t_Pa = 2.4e6, p_Pa = 4e6}", '{file = "loads.csv"}'))
 
 
 @pytest.fixture(scope="module")
 def tilted(tmp_path_factory):
-    place = tmp_path_factory.mktemp("tilted")
-    case = CASE + "\n[probes]\nx_m = [0.1]\ny_m = [0.0]\n"
-    require_done(program("run", write_case(place, case), "-q", "-o", "out", cwd=place))
-    return place / "out"
+    return results_of(tmp_path_factory.mktemp("tilted"), CASE + "probes = {x_m = [0.1], y_m = [0.0]}\n")
 
 
-def page_of(folder):
-    assert main([str(folder), "-o", str(folder.parent / "report.html")]) == 0
-    text = (folder.parent / "report.html").read_text(encoding="utf-8")
-    data = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)[1]
-    return re.sub(r"<script[\s\S]*?</script>", "", text), json.loads(data)
+def shown(folder):
+    """The page of a run, beside its folder, and its data."""
+    text = page_of(folder, folder.parent / "report.html")
+    return re.sub(r"<script[\s\S]*?</script>", "", text), data_of(text)
 
 
 def parts_of(data, name):
@@ -175,7 +149,7 @@ def test_tractions_that_vary_leave_the_change_alone(table):
     run = slipfront.open(table)
     whole = run.absolute_stress(run.probes)
     assert all(np.isnan(whole[name]).all() for name in ("stress_xx_Pa", "stress_yy_Pa", "stress_xy_Pa"))
-    text, data = page_of(table)
+    text, data = shown(table)
     assert all(part["before"] is None for part in parts_of(data, "stress").values())
     assert data["runs"][0]["probes"]["are_changes"] and 'id="probes-change"' not in text
     assert "vary along the interface leave the state in the bulk unknown" in text
@@ -188,13 +162,13 @@ def test_statics_record_the_whole_stress(tilted):
     for name in whole:
         np.testing.assert_array_equal(whole[name], run.probes[name])
     assert "change" not in run.probes.stress_yy_Pa.attrs["long_name"]
-    _, data = page_of(tilted)
+    _, data = shown(tilted)
     assert not data["runs"][0]["probes"]["are_changes"]
     assert {part["before"] for part in parts_of(data, "stress").values()} == {0}
 
 
 def test_the_report_has_the_change_and_what_is_added(pair):
-    text, data = page_of(pair)
+    text, data = shown(pair)
     parts = parts_of(data, "stress")
     before = {label: part["before"] for label, part in parts.items()}
     assert before == {"σ<sub>xx</sub>": None, "σ<sub>yy</sub>": -4, "σ<sub>xy</sub>": 2.4}  # MPa
@@ -213,32 +187,25 @@ def rows(folder):
 
 def test_the_set_up_is_told_in_words_and_engineering_units(pair):
     told = rows(pair)
-    material = "E = 2.4 GPa, ν = 0.38, ρ = 1200 kg/m³, no damping"
-    assert (
-        told["Plate"] == f"150 mm × 60 mm, plane stress; {material}; upper edge held, sides free of traction"
-    )
-    assert told["Base"] == (
-        "150 mm × 30 mm; E = 4 GPa, ν = 0.35, ρ = 1230 kg/m³, stiffness damping 10 ns; lower edge absorbing, "
-        "sides free of traction"
-    )
-    assert told["Loads"] == "pressure p = 4 MPa, shear t = 2.4 MPa, prescribed, uniform"
-    assert told["Friction"] == (
-        "weakens linearly with slip: μ<sub>s</sub> = 0.7, μ<sub>k</sub> = 0.45, d<sub>c</sub> = 10 µm; "
-        "pressure in "
-        "the strength follows with a delay, t* = 2 µs"
-    )
-    assert told["Start"] == (
-        "trigger over 30 mm at the left edge: shear added, 2 times what is missing to μ<sub>s</sub>p, "
-        "rising over "
-        "2 µs"
-    )
+    for name, part in (
+        (
+            "Plate",
+            "150 mm × 60 mm, plane stress; E = 2.4 GPa, ν = 0.38, ρ = 1200 kg/m³, no damping; upper edge",
+        ),
+        ("Base", "150 mm × 30 mm; E = 4 GPa, ν = 0.35, ρ = 1230 kg/m³, stiffness damping 10 ns"),
+        ("Base", "lower edge absorbing, sides free"),
+        ("Loads", "pressure p = 4 MPa, shear t = 2.4 MPa, prescribed, uniform"),
+        ("Friction", "linearly with slip: μ<sub>s</sub> = 0.7, μ<sub>k</sub> = 0.45, d<sub>c</sub> = 10 µm"),
+        ("Friction", "delay, t* = 2 µs"),
+        ("Start", "trigger over 30 mm at the left edge: shear added, 2 times what is missing"),
+        ("Start", "rising over 2 µs"),
+    ):
+        assert part in told[name]
 
 
 def test_loads_of_other_methods_are_told(table, tilted):
-    assert (
-        rows(table)["Loads"]
-        == "pressure p 4 MPa to 5 MPa, shear t 2 MPa to 2.4 MPa along x, prescribed by a table"
-    )
+    told = rows(table)["Loads"]
+    assert told == "pressure p 4 MPa to 5 MPa, shear t 2 MPa to 2.4 MPa along x, prescribed by a table"
     told = rows(tilted)
     assert told["Loads"].startswith(
         "upper edge pressed down 370 µm at its left end, 37 µm at its right, then moved"
@@ -248,46 +215,45 @@ def test_loads_of_other_methods_are_told(table, tilted):
 
 def test_forces_are_told_with_their_displacements(tmp_path):
     loading = "[loading]\nmean_pressure_Pa = 5e6\nshear_over_critical = 0.8\n"
-    case = write_case(tmp_path, '[plate]\nelement_size_m = 5e-3\n[event]\nkind = "left"\n' + loading)
-    require_done(program("run", case, "-q", "-o", "out", "--set", "time.end_s=1e-5", cwd=tmp_path))
+    results_of(tmp_path, CASE + "time.end_s = 1e-5\n" + loading)
     told = rows(tmp_path / "out")["Loads"]
     pattern = (
         r"normal force 1 MN/m, a mean pressure of 5 MPa; shear force [0-9.]+ kN/m, 0\.8 of the critical one; "
         r"upper edge pressed down [0-9.]+ µm, then moved by [0-9.]+ µm to \+x; pressure p "
     )
     assert re.match(pattern, told), told
-    found = slipfront.info(case).loads
+    found = slipfront.info(tmp_path / "case.toml").loads
     of_run = run_json(tmp_path / "out")["statics"]["loads"]
     assert {name: getattr(found, name) for name in of_run} == of_run
-    assert "mean_pressure_Pa" in repr(slipfront.info(case))
+    assert "mean_pressure_Pa" in repr(slipfront.info(tmp_path / "case.toml"))
     assert slipfront.info(CASE).loads is None
 
 
 @pytest.mark.parametrize(
-    ("tables", "says"),
+    ("name", "keys", "says"),
     [
-        ({"loading": {"shear_stiffness_Pa": 1e9}}, "; machine of stiffness 1 GPa along x"),
-        ({"loading": {"normal_stiffness_Pa": 2e9}}, "; stiffness 2 GPa downwards"),
-        ({"loading": {"normal_stiffness_Pa": 0.0}}, "; dead load"),
+        ("loading", {"shear_stiffness_Pa": 1e9}, "; machine of stiffness 1 GPa along x"),
+        ("loading", {"normal_stiffness_Pa": 2e9}, "; stiffness 2 GPa downwards"),
+        ("loading", {"normal_stiffness_Pa": 0.0}, "; dead load"),
+        ("loading", {"shear_stiffness_Pa": math.inf}, ""),
         (
-            {"sequence": {"times_s": [2.0, 10.0], "shears_m": [1e-6, 1e-6]}},
+            "sequence",
+            {"times_s": [2, 10], "shears_m": [1e-6, 1e-6]},
             "; loaded along a path of 2 points to 1 µm at 10 s",
         ),
-        ({"loading": {"shear_stiffness_Pa": math.inf}}, ""),
     ],
 )
-def test_the_machine_and_the_path_are_told(pair, tables, says):
+def test_the_machine_and_the_path_are_told(pair, name, keys, says):
     run = open_run(pair)
-    case = run.case | {name: run.case.get(name, {}) | table for name, table in tables.items()}
+    case = run.case | {name: run.case.get(name, {}) | keys}
     assert setup.loads(with_case(run, case)) == setup.loads(run) + says
 
 
 def test_info_tells_the_machine_and_the_path(tmp_path):
-    keys = 'title = "machine"\n[plate]\nelement_size_m = 5e-3\n[loading]\nshear_stiffness_Pa = 1e9\n'
-    path = (
-        "normal_stiffness_Pa = 0.0\n[sequence]\nmax_events = 2\ntimes_s = [2, 10]\nshears_m = [1e-6, 1e-6]\n"
-    )
-    printed = require_done(program("info", write_case(tmp_path, keys + path), cwd=tmp_path)).stdout
+    loading = "loading = {shear_stiffness_Pa = 1e9, normal_stiffness_Pa = 0.0}\n"
+    path = "sequence = {max_events = 2, times_s = [2, 10], shears_m = [1e-6, 1e-6]}\n"
+    case = write_case(tmp_path, "plate.element_size_m = 5e-3\n" + loading + path)
+    printed = require_done(program("info", case, cwd=tmp_path)).stdout
     assert re.search(r"machine along x +1e\+09 Pa\n", printed), printed
     assert re.search(r"machine downwards +dead load\n", printed), printed
     assert re.search(r"path of the loading +2 points, to 1e-06 m at 10 s\n", printed), printed
@@ -300,27 +266,23 @@ def test_the_critical_crack_is_that_of_info(pair):
 
 
 @pytest.mark.parametrize(
-    ("table_name", "changes", "says"),
+    ("changes", "says"),
     [
-        ("event", {"kind": "spontaneous"}, "spontaneous: the shear just exceeds the critical one"),
-        ("event", {"trigger_form": "weakened"}, "30 mm at the left edge: μ = μ<sub>k</sub> from the start"),
-        ("event", {"trigger_form": "raised", "trigger_amount": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
-        (
-            "event",
-            {"kind": "nucleation"},
-            "patch around x = 75 mm, 7.5 mm to each side and a taper of 3.75 mm",
-        ),
+        ({"kind": "spontaneous"}, "spontaneous: the shear just exceeds the critical one"),
+        ({"trigger_form": "weakened"}, "30 mm at the left edge: μ = μ<sub>k</sub> from the start"),
+        ({"trigger_form": "raised", "trigger_amount": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
+        ({"kind": "nucleation"}, "patch around x = 75 mm, 7.5 mm to each side and a taper of 3.75 mm"),
     ],
 )
-def test_starts_are_told(pair, table_name, changes, says):
+def test_starts_are_told(pair, changes, says):
     run = open_run(pair)
     nucleation = {"form": "weakened", "x_m": 0.075, "half_length_m": 7.5e-3, "taper_m": 3.75e-3}
-    case = run.case | {table_name: run.case[table_name] | changes, "nucleation": nucleation}
+    case = run.case | {"event": run.case["event"] | changes, "nucleation": nucleation}
     assert says in setup.start(with_case(run, case))
 
 
 def test_the_sketch_is_to_scale(pair):
-    text, _ = page_of(pair)
+    text, _ = shown(pair)
     svg = re.search(r"<svg[\s\S]*?</svg>", text)[0]
     (w, h), (base_w, base_h) = (
         map(float, size) for size in re.findall(r'<rect [^>]*width="([\d.]+)" height="([\d.]+)"', svg)
@@ -363,17 +325,16 @@ def test_waves_of_both_bodies_and_of_the_pair_are_drawn(pair, tilted):
 
 def test_what_does_not_vary_is_no_panel(pair, tilted):
     """Uniform tractions: one static ratio, and the criteria are folded."""
-    _, data = page_of(pair)
+    _, data = shown(pair)
     assert data["folded"] and "static" not in data["panels"] and data["panels"][0] == "x"
-    _, data = page_of(tilted)
+    _, data = shown(tilted)
     assert not data["folded"] and data["panels"] == ["x", "static", "dynamic", "rise"]
 
 
 def test_constant_fields_are_sentences(tmp_path):
     """Nothing starts: the slip rate, the slip, p and t/p are the same everywhere."""
-    keys = sets("event.kind=none", "time.end_s=1e-5", "output.snapshot_times_s=[50e-6]")
-    require_done(program("run", write_case(tmp_path, PAIR), "-q", "-o", "out", *keys, cwd=tmp_path))
-    text, data = page_of(tmp_path / "out")
+    keys = ("event.kind=none", "time.end_s=1e-5", "output.snapshot_times_s=[50e-6]")
+    text, data = shown(results_of(tmp_path, PAIR, *keys))
     assert data["fields"] == [] and data["panels"] == [] and 'id="space-time-plot"' not in text
     assert "The pressure p is 4 MPa everywhere and at all times." in text
     assert "t/p is 0.6 everywhere and at all times." in text
@@ -389,14 +350,8 @@ def test_every_data_set_has_the_attributes_of_cf(pair):
         for name, variable in data.variables.items():
             assert variable.attrs.keys() >= {"units", "long_name"}, name
             assert "unit" not in variable.attrs and "description" not in variable.attrs
-    assert run.history.slip_rate_m_per_s.attrs == {
-        "units": "m/s",
-        "long_name": "velocity of the plate along x relative to its base",
-    }
-
-
-def test_only_public_names_are_listed():
-    assert dir(slipfront) == sorted(slipfront.__all__)
+    name = "velocity of the plate along x relative to its base"
+    assert run.history.slip_rate_m_per_s.attrs == {"units": "m/s", "long_name": name}
 
 
 @pytest.mark.parametrize(
