@@ -49,6 +49,8 @@ width_m = {WIDTH_M}
 height_m = {HEIGHT_M}
 element_size_m = 1e-3
 corner = "none"
+[base]
+kind = "rigid"
 [material]
 youngs_modulus_Pa = {E_PA}
 poissons_ratio = {NU}

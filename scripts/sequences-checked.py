@@ -283,7 +283,14 @@ RAMPS = {8e-6: (1e-6, 3e-7, 1e-7), 16e-6: (1e-6, 3e-7, 1e-7)}  # speeds over c_L
 SPAN_M, ROWS = 400e-6, 4000
 LARGE_M2 = 1e-6  # potency from which events are compared
 PLATE: dict[str, Any] = {
+    "plate.width_m": 0.2,
+    "plate.height_m": 0.1,
     "plate.element_size_m": 4e-3,
+    "plate.corner": "relief",
+    "base.kind": "rigid",
+    "loading.tilt_left_m": 0.37e-3,
+    "loading.tilt_right_m": 0.037e-3,
+    "friction.law": "velocity_weakening",
     "event.kind": "spontaneous",
     "time.interface_substeps": 1,
 }

@@ -27,7 +27,17 @@ COARSE = """\
 title = "coarse"
 
 [plate]
+width_m = 0.2
+height_m = 0.1
 element_size_m = 5e-3
+corner = "relief"
+
+[base]
+kind = "rigid"
+
+[loading]
+tilt_left_m = 0.37e-3
+tilt_right_m = 0.037e-3
 
 [friction]
 law = "velocity_weakening"

@@ -19,8 +19,8 @@ mu_s = 1.3
 # the schema, its relations and the mesh refuse: tests/input and tests/mesh.
 CASES = [
     ("[plate]\nelement_size_mm = 5e-3\n", "element_size_mm", ["element_size_m?"]),
-    ('[plate]\nwidth_m = "0.2"\n', "width_m", ["number", "width_m = 0.2"]),
-    ('[friction]\nlaw = "coulomb"\nmu_k = 0.6\n', "mu_k", ["velocity_weakening", "remove"]),
+    ('[plate]\nwidth_m = "0.2"\n', "width_m", ["number", "width_m = 0.1"]),
+    ('[friction]\nlaw = "coulomb"\nmu_k = 0.6\n', "mu_k", ["slip_weakening", "remove"]),
     ("[friction]\nmu_s = 0.5\ncohesion_Pa = 1e4\n", "cohesion_Pa", ["loading.method = prestress", "remove"]),
     ("[plate]\nwidth_m = = 0.2\n", "width_m", ["TOML"]),
     ("[plate]\nelement_size_m = 3e-3\n", "element_size_m", ["nearest", "0.00"]),

@@ -21,8 +21,11 @@ element_size_m = 1e-3
 corner = "none"
 sides = "absorbing"
 top = "absorbing"
+[base]
+kind = "rigid"
 [friction]
 law = "slip_weakening"
+d_c_m = 4e-6
 file = "friction.csv"
 between_rows = "stepwise"
 """

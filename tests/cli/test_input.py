@@ -5,7 +5,7 @@ import os
 import re
 
 import pytest
-from common import finished, one_line, refusal, require_done, require_same_bytes, run_json, sets
+from common import COARSE, finished, one_line, refusal, require_done, require_same_bytes, run_json, sets
 
 PRESTRESSED = """\
 plate = {element_size_m = 5e-3, corner = "none"}
@@ -27,8 +27,8 @@ def test_case_and_table_from_pipes(program, pipe, write_case, tmp_path):
 
 
 def test_late_error_of_a_case_from_a_pipe_has_its_line(program, pipe):
-    case = pipe("case.toml", "[plate]\nelement_size_m = 5e-3\n[friction]\nmu_s = 100\n")
-    assert refusal(program("run", case, "-o", "out")).startswith(f"{case}:4: ")
+    case = pipe("case.toml", COARSE.replace("mu_s = 1.3", "mu_s = 100"))
+    assert refusal(program("run", case, "-o", "out")).startswith(f"{case}:18: ")
 
 
 @pytest.mark.parametrize("name", ["loop", "n" * 300, "d/" * 3000 + "x", "file/x", "folder", "none"])
@@ -106,7 +106,7 @@ def test_table_in_another_unit(program, write_case, tmp_path):
     rows = "".join(f"{x},2.1e6,5e6\n" for x in range(0, 201, 10))
     (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n" + rows)
     note = (
-        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.2 m: 20 of its 21 "
+        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.1 m: 20 of its 21 "
         "rows lie beyond it; are its positions in m?"
     )
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):

@@ -8,7 +8,9 @@ import pytest
 from common import finished, refusal, require_done, require_same_bytes, run_json, sets, wait_until_or_over
 
 CASE = """\
-plate = {element_size_m = 5e-3, corner = "none"}
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 5e-3}
+base.kind = "rigid"
+friction.law = "velocity_weakening"
 loading = {mean_pressure_Pa = 5e6, shear_over_critical = 0.8}
 event.kind = "left"
 time.end_s = 1e-4
@@ -94,7 +96,8 @@ def test_cases_without_forces_tell_nothing_of_them(program, coarse, tmp_path):
     assert "mean_pressure" not in (tmp_path / "out/case.resolved.toml").read_text()
 
 
-def test_an_override_takes_the_place_of_the_displacements(program, coarse):
+def test_an_override_takes_the_place_of_the_displacements(program, write_case):
+    coarse = write_case("[plate]\nelement_size_m = 5e-3\n")
     result = require_done(program("validate", coarse, *sets("loading.mean_pressure_Pa=5e6")))
     assert "not apply" not in result.stdout
     by_displacement = coarse.read_text() + "[loading]\ntilt_left_m = 1e-4\ntilt_right_m = 1e-4\n"

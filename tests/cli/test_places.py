@@ -6,8 +6,10 @@ import re
 import pytest
 from common import ROOT, refusal, sets
 
-COARSE = "[plate]\nelement_size_m = 5e-3\n"
-SQUARE = COARSE + 'corner = "none"\n'
+PLATE = "[plate]\nwidth_m = 0.2\nheight_m = 0.1\nelement_size_m = 5e-3\n"
+COARSE = PLATE + 'corner = "relief"\n'
+SQUARE = PLATE + 'corner = "none"\n'
+RIGID = '[base]\nkind = "rigid"\n'
 PRESSED = '[loading]\nmethod = "prestress"\n[prestress]\nt_Pa = 2.1e6\np_Pa = 5e6\n[event]\nkind = "none"\n'
 TABLED = PRESSED.replace("t_Pa = 2.1e6\np_Pa = 5e6\n", 'file = "table.csv" # here\n')
 WEAKENING = '[friction]\nlaw = "slip_weakening"\nmu_s = 0.6\nmu_k = 99.9\n'
@@ -30,8 +32,11 @@ CASES = [
     (COARSE + "relief_depth_m = 1e-4 # here\n", None),
     (COARSE + 'sides = "absorbing" # here\n', None),
     (SQUARE + 'sides = "absorbing"\n', "plate.corner=relief"),
-    ('[plate]\ncorner = "fillet"\nelement_size_m = 0.05 # here\n', None),
-    ('[plate]\nelement_size_m = 0.1\ncorner = "none"\nsides = "periodic" # here\n' + PRESSED, None),
+    ('[plate]\ncorner = "fillet"\nelement_size_m = 0.05 # here\n' + RIGID, None),
+    (
+        '[plate]\nwidth_m = 0.2\nheight_m = 0.1\nelement_size_m = 0.1\nsides = "periodic" # here\n' + PRESSED,
+        None,
+    ),
     (SQUARE + "[time]\ninterface_rows = 3\n", "time.interface_rows=30"),
     ('[plate]\nwidth_m = 0.2\ncorner = "none"\nelement_size_m = 0.05 # here\n', None),
     ("[plate]\nelement_size_m = 0.05 # here\n", None),
@@ -83,13 +88,13 @@ LATE = [
     # The margins at both ends leave nothing inside; mu_s comes first, or the margin that is set.
     ("mu_s = 1.2 # here\n[loading]\nedge_margin_m = 0.0999\n", None, ["mu_s", "edge_margin_m"]),
     ("mu_s = 1.2\n", "loading.edge_margin_m=0.0999", []),
-    ("law = 'velocity_weakening'\n[loading]\nedge_margin_m = 0.0999 # here\n", None, []),
+    ("[loading]\nedge_margin_m = 0.0999 # here\ntilt_left_m = 0.37e-3\ntilt_right_m = 0.037e-3\n", None, []),
 ]
 
 
 @pytest.mark.parametrize("text, override, words", LATE)
 def test_the_line_is_that_of_what_only_the_statics_find(program, write_case, tmp_path, text, override, words):
-    text = COARSE + "[friction]\n" + text
+    text = COARSE + RIGID + "[friction]\nlaw = 'velocity_weakening'\n" + text
     case = write_case(text)
     printed = refusal(program("run", case, "-o", "out", *(sets(override) if override else [])))
     assert printed.startswith(place(case, text, override))

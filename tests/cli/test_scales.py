@@ -16,7 +16,8 @@ loading = {tilt_left_m = 5e-6, tilt_right_m = 4e-6}
 friction = {law = "slip_weakening", mu_s = 0.6, mu_k = 0.3, d_c_m = 4e-7}
 """
 PRESTRESSED = """\
-plate = {{element_size_m = 2e-3, corner = "none"}}
+plate = {{width_m = 0.2, height_m = 0.1, element_size_m = 2e-3}}
+base.kind = "rigid"
 loading.method = "prestress"
 prestress = {{t_Pa = {t}, p_Pa = 5e6}}
 friction = {{law = "slip_weakening", mu_s = 0.6, mu_k = 0.3, d_c_m = 4e-6}}
@@ -109,6 +110,11 @@ def test_what_info_tells_of_a_rupture(program, write_case):
     assert "S < 1.77: fronts above c_S can form" in printed
 
 
+BLOCK = """\
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 5e-3}
+base.kind = "rigid"
+friction.law = "velocity_weakening"
+"""
 PRESSED = (
     *("plate.corner=none", "plate.sides=absorbing", "loading.method=prestress", "prestress.p_Pa=5e6"),
     *("prestress.t_Pa=2e6", "event.kind=nucleation"),
@@ -119,7 +125,10 @@ PATCH = ("event.kind=nucleation", "nucleation.x_m=0.05", "nucleation.half_length
 ODD = [
     (["friction.mu_s=70"], "friction.mu_s = 70: "),
     ([*SLIP_WEAKENING, "friction.d_c_m=1"], "friction.d_c_m = 1: "),
-    (["loading.tilt_left_m=0.03"], "presses the plate by 0.15 of Young's modulus, beyond small strains"),
+    (
+        ["loading.tilt_left_m=0.03", "loading.tilt_right_m=0"],
+        "presses the plate by 0.15 of Young's modulus, beyond small strains",
+    ),
     (["material.youngs_modulus_Pa=200"], "material.youngs_modulus_Pa = 200: "),
     (["event.kind=left", "event.trigger_zone_m=4e-3"], "event.trigger_zone_m = 0.004 m is less than two"),
     (["time.end_s=1e-4"], "time.end_s = 0.0001 s is before a shear wave has crossed"),
@@ -135,13 +144,13 @@ ODD = [
 
 @pytest.mark.parametrize(("settings", "note"), ODD)
 def test_odd_numbers_are_asked_about(program, write_case, settings, note):
-    case = write_case("[plate]\nelement_size_m = 5e-3\n")
+    case = write_case(BLOCK)
     printed = program("validate", case, *sets(*settings)).stdout
     assert any(note in line for line in printed.splitlines() if line.startswith("note: ")), printed
 
 
 def test_a_sound_case_has_no_notes(program, write_case):
-    case = write_case("[plate]\nelement_size_m = 5e-3\n")
+    case = write_case(BLOCK)
     damped = "material.stiffness_damping_s=2e-6"
     assert program("validate", case, *sets(damped)).stdout == f"{case}: valid\n"
     printed = program("validate", case, *sets(*PATCH, damped, "time.end_s=169e-6")).stdout
@@ -152,7 +161,8 @@ def test_a_machine_too_stiff_for_events_is_told(program, write_case):
     """Under uniform slip: H/G of the block, and what the machine yields, against d_c/((b - a) p)."""
     slow = '[friction]\nlaw = "rate_and_state_aging"\na = 0.01\nb = 0.02\n[sequence]\nmax_events = 2\n'
     block = (
-        "plate = {width_m = 0.1, height_m = 0.05, element_size_m = 2e-3}\nloading.mean_pressure_Pa = 5e6\n"
+        "plate = {width_m = 0.1, height_m = 0.05, element_size_m = 2e-3}\nbase.kind = 'rigid'\n"
+        "loading.mean_pressure_Pa = 5e6\n"
     )
     case = write_case(block + slow)
     modulus_Pa = 2.6e9 / (2 * 1.37)

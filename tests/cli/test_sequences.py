@@ -17,8 +17,10 @@ CASES = Path(__file__).parent / "cases" / "sequences"
 STICK_SLIP = (CASES / "stick_slip.toml", *sets("plate.element_size_m=0.02", "sequence.max_events=2"))
 # Two events of an instant.
 STICKING = """\
-plate = {element_size_m = 10e-3, corner = "none"}
-event.kind = "spontaneous"
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 10e-3}
+base.kind = "rigid"
+loading = {tilt_left_m = 0.37e-3, tilt_right_m = 0.037e-3}
+friction.law = "velocity_weakening"
 sequence.max_events = 2
 """
 

@@ -171,6 +171,8 @@ class Maker:
             case["base.youngs_modulus_Pa"] = self.E_Pa * (1 if like else self.power(1e-3, 1e3))
             case["base.density_kg_per_m3"] = rho * (1 if like else self.power(0.3, 3))
             case["base.poissons_ratio"] = 0.37 if like else r.uniform(-0.9, 0.49)
+        else:
+            case["base.kind"] = "rigid"
         density = r.choice([0.05, 0.15, 0.4])
         for name, key in self.keys.items():
             if name in case or name.endswith("file") or (key["laws"] and law not in key["laws"]):

@@ -1,12 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cases that take a moment, of every kind of state that a run carries."""
 
+#: That of Kammer et al. (2012).
+_PLATE = {
+    "plate.width_m": 0.2,
+    "plate.height_m": 0.1,
+    "plate.corner": "relief",
+    "base.kind": "rigid",
+    "loading.tilt_left_m": 0.37e-3,
+    "loading.tilt_right_m": 0.037e-3,
+    "friction.law": "velocity_weakening",
+}
 # Elements of 5 mm and two snapshots: a tenth of a second.
-COARSE = {"plate.element_size_m": 5e-3, "event.kind": "left", "output.snapshot_times_s": [2e-5, 1e-4]}
+COARSE = _PLATE | {
+    "plate.element_size_m": 5e-3,
+    "event.kind": "left",
+    "output.snapshot_times_s": [2e-5, 1e-4],
+}
 # What a folder may hold before.
-EARLIER = {"plate.element_size_m": 5e-3, "friction.mu_k": 0.9}
+EARLIER = _PLATE | {"plate.element_size_m": 5e-3, "friction.mu_k": 0.9}
 
 _PRESTRESSED = {
+    "base.kind": "rigid",
     "plate.element_size_m": 1e-3,
     "plate.width_m": 0.1,
     "plate.height_m": 0.02,
@@ -21,7 +36,7 @@ _PRESTRESSED = {
     "nucleation.half_length_m": 0.015,
     "output.snapshot_times_s": [1e-5, 3e-5],
 }
-_COARSER = {"plate.element_size_m": 4e-3}
+_COARSER = _PLATE | {"plate.element_size_m": 4e-3}
 _TRIGGERED = _COARSER | {"event.kind": "left", "output.snapshot_times_s": [1e-5, 5e-5, 1e-4]}
 _FINER = _TRIGGERED | {"plate.element_size_m": 2.5e-3}
 _GRADED = _FINER | {"plate.fine_height_m": 0.02, "plate.corner": "none"}
@@ -35,7 +50,7 @@ KINDS = {
     "graded_one_step": _GRADED | {"plate.coarsenings": 1, "time.local_steps": False},
     "predictor_corrector": _TRIGGERED | {"contact.algorithm": "predictor_corrector"},
     "single_precision": _TRIGGERED | {"time.precision": "single"},
-    "ramp": {"plate.element_size_m": 5e-3, "loading.method": "ramp"},
+    "ramp": _PLATE | {"plate.element_size_m": 5e-3, "loading.method": "ramp"},
     "coulomb": _TRIGGERED | {"friction.law": "coulomb", "friction.mu": 1.0},
     "delayed_strength": _TRIGGERED
     | {"friction.regularisation": "strength", "friction.relaxation_time_s": 2e-6},

@@ -31,7 +31,15 @@ CASE = """\
 title = "shared"
 
 [plate]
+width_m = 0.2
+height_m = 0.1
 element_size_m = 4e-3
+
+[base]
+kind = "rigid"
+
+[friction]
+law = "velocity_weakening"
 
 [event]
 kind = "left"

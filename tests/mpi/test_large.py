@@ -17,11 +17,14 @@ height_m = 0.6
 element_size_m = 1e-3
 corner = "none"
 {plate}
+[base]
+{base}
 [loading]
 method = "prestress"
 [prestress]
 {prestress}
 [friction]
+law = "velocity_weakening"
 mu_s = 0.6
 mu_k = 0.1
 [event]
@@ -44,7 +47,6 @@ interval_s = 1e-6
 """
 UNIFORM = "t_Pa = 0.45e6\np_Pa = 1e6"
 BASE = """
-[base]
 kind = "body"
 youngs_modulus_Pa = 5e9
 poissons_ratio = 0.3
@@ -64,7 +66,7 @@ CASES = {
     # The rupture passes the sides.
     "periodic, two bodies": {
         "plate": 'sides = "periodic"',
-        "rest": BASE + 'sides = "periodic"',
+        "base": BASE + 'sides = "periodic"',
         "x_m": 0.99,
         "y_m": -0.2,
         "output": "snapshot_interval_s = 1.6e-5",
@@ -80,7 +82,14 @@ PROCESSES = dict.fromkeys(CASES, 3) | {"periodic, two bodies": 2}
 
 
 def write_case(folder, name, **changes):
-    values = {"width_m": 1.0, "prestress": UNIFORM, "x_m": 0.34, "y_m": 0.2, "end_s": 3e-5}
+    values = {
+        "width_m": 1.0,
+        "base": 'kind = "rigid"',
+        "prestress": UNIFORM,
+        "x_m": 0.34,
+        "y_m": 0.2,
+        "end_s": 3e-5,
+    }
     values |= dict.fromkeys(("plate", "time", "output", "rest"), "") | CASES[name] | changes
     (folder / "prestress.csv").write_text("x_m,t_Pa,p_Pa\n0,0.4e6,1e6\n0.6,0.46e6,1e6\n1,0.43e6,1.1e6\n")
     (folder / "case.toml").write_text(PLATE.format(**values))

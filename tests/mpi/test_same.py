@@ -11,9 +11,14 @@ from conftest import send
 PLATE = """\
 title = "shared"
 [plate]
+width_m = 0.2
 element_size_m = 2e-3
 height_m = 0.04
 {plate}
+[base]
+{base}
+[loading]
+{loading}
 [time]
 end_s = 60e-6
 {time}
@@ -30,8 +35,9 @@ y_m = [0.0049, 0.0101]
 
 LAW = 'law = "velocity_weakening"\nmu_s = 1.3\nmu_k = 0.6'
 RELIEF = {"plate": 'corner = "relief"'}
+RIGID = 'kind = "rigid"'
+TILT = "tilt_left_m = 0.37e-3\ntilt_right_m = 0.037e-3"
 BASE = """
-[base]
 kind = "body"
 youngs_modulus_Pa = 1.4e9
 poissons_ratio = 0.3
@@ -43,9 +49,8 @@ GRADED = "coarsenings = 1\nfine_height_m = 12e-3\n"
 FEW_SUB_STEPS = "interface_substeps = 2\ninterface_rows = 2"  # as parts of 33 columns allow
 DAMPED = "[material]\nstiffness_damping_s = 1e-7\n"  # so that larger elements take larger steps
 TABLE = "x_m,mu_s\n0,1.3\n0.09,1.3\n0.11,1.35\n0.2,1.3\n"
+PRESTRESS = 'method = "prestress"'
 NUCLEATION = """
-[loading]
-method = "prestress"
 [prestress]
 t_Pa = 4.6e6
 p_Pa = 4e6
@@ -72,12 +77,14 @@ CASES = {
     "rate and state": {
         "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
         "law": 'law = "rate_and_state_aging"\nf0 = 1.1',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="overstress", x_m=0.1),
     },
     # The slip rate at a tip follows from the table, which rank 0 alone has.
     "rate and state, table of tractions": {
         "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
         "law": 'law = "rate_and_state_aging"\nf0 = 1.1',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="overstress", x_m=0.1).replace(
             "t_Pa = 4.6e6\np_Pa = 4e6", 'file = "tractions.csv"'
         ),
@@ -85,29 +92,34 @@ CASES = {
     },
     "forced nucleation, growing tractions": {
         "plate": 'corner = "none"',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="forced", x_m=0.1).replace(
             "[event]", "t_rate_Pa_per_s = 5e9\np_rate_Pa_per_s = -2e9\n[event]"
         )
         + "front_speed_m_per_s = 500\nweakening_time_s = 2e-6\n",
     },
     "friction along x": {"friction": 'file = "mu.csv"', "files": {"mu.csv": TABLE}},
-    "two bodies": {"rest": BASE},
+    "two bodies": {"base": BASE},
     "absorbing edges": {
         "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="overstress", x_m=0.1),
     },
     # The rupture passes the sides.
     "periodic": {
         "plate": 'corner = "none"\nsides = "periodic"\ntop = "absorbing"',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="overstress", x_m=0.19),
     },
     # The patch lies where the parts of two processes, and of three, meet.
     "weakened between two": {
         "plate": 'corner = "none"',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="weakened", x_m=0.1),
     },
     "weakened between three": {
         "plate": 'corner = "none"',
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="weakened", x_m=0.0667),
     },
     "graded, relieved corners": {
@@ -122,16 +134,19 @@ CASES = {
     "graded, two bodies": {
         "plate": GRADED + 'corner = "none"',
         "time": FEW_SUB_STEPS,
-        "rest": BASE + "coarsenings = 2\nfine_height_m = 8e-3\n" + DAMPED,
+        "base": BASE + "coarsenings = 2\nfine_height_m = 8e-3\n",
+        "rest": DAMPED,
     },
     "graded, absorbing edges": {
         "plate": GRADED + 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
         "time": FEW_SUB_STEPS,
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="overstress", x_m=0.1) + DAMPED,
     },
     "graded, periodic": {
         "plate": GRADED + 'corner = "none"\nsides = "periodic"\ntop = "absorbing"',
         "time": FEW_SUB_STEPS,
+        "loading": PRESTRESS,
         "rest": NUCLEATION.format(form="overstress", x_m=0.19) + DAMPED,
     },
     "quiet end": {
@@ -153,7 +168,11 @@ def write_case(folder, name):
     parts = CASES[name]
     for file, text in parts.get("files", {}).items():
         (folder / file).write_text(text, encoding="utf-8")
-    slots = {"law": LAW} | dict.fromkeys(("plate", "time", "friction", "rest"), "") | parts
+    slots = (
+        {"law": LAW, "base": RIGID, "loading": TILT}
+        | dict.fromkeys(("plate", "time", "friction", "rest"), "")
+        | parts
+    )
     (folder / "case.toml").write_text(PLATE.format(**slots), encoding="utf-8")
     return folder / "case.toml"
 
@@ -224,7 +243,11 @@ def test_any_number_of_processes_goes_on(tmp_path, mpirun):
 
 SEQUENCE = """
 [plate]
+width_m = 0.2
+height_m = 0.1
 element_size_m = 4e-3
+[base]
+kind = "rigid"
 [event]
 kind = "spontaneous"
 [sequence]

@@ -11,10 +11,19 @@ import slipfront
 from common import built, call, require_done, sets
 from slipfront.running import flattened
 
+#: The plate of Kammer et al. (2012), without its mesh and event.
+PLATE = """\
+plate.width_m = 0.2
+plate.height_m = 0.1
+plate.corner = "relief"
+base.kind = "rigid"
+friction.law = "velocity_weakening"
+"""
+TILT = "loading.tilt_left_m = 0.37e-3\nloading.tilt_right_m = 0.037e-3\n"
 # A few hundredths of a second.
-CASE = """\
+CASE = f"""\
 title = "coarse"
-plate.element_size_m = 5e-3
+{PLATE}{TILT}plate.element_size_m = 5e-3
 event.kind = "left"
 output.snapshot_times_s = [20e-6, 60e-6]
 """

@@ -64,6 +64,7 @@ def test_a_rupture_is_that_of_its_case(name):
         | {"taper_m": 0},
         "time": {"end_s": 50e-6},
     }
+    tables["base"] = {"kind": "rigid"}
     if name == "two_bodies":
         below = made["ALUMINIUM"] | made["DAMPING"]
         tables["base"] = {"kind": "body", "height_m": made["PLATE"]["height_m"], **below}
@@ -71,7 +72,7 @@ def test_a_rupture_is_that_of_its_case(name):
 
 
 def test_a_law_with_a_state_moves_as_in_its_case():
-    tables = {"plate": PLATE | {"corner": "none"}, "material": {"plane": "strain"}}
+    tables = {"plate": PLATE, "material": {"plane": "strain"}, "base": {"kind": "rigid"}}
     law = {"law": "rate_and_state_slip", "d_c_m": 1e-6, "V_i_m_per_s": 0.1}
     body = slipfront.Body(slipfront.Mesh(**tables["plate"]), **tables["material"])
     with pytest.raises(slipfront.CaseError, match="friction.tip_slip_rate_m_per_s has no default here"):
@@ -88,7 +89,8 @@ def test_a_start_from_statics_is_that_of_its_case():
     tables = {
         "plate": PLATE | {"width_m": 0.1, "height_m": 0.05, "corner": "relief"},
         "material": {"plane": "strain"},
-        "friction": {"mu_s": 0.9},
+        "base": {"kind": "rigid"},
+        "friction": {"law": "velocity_weakening", "mu_s": 0.9},
         "time": {"end_s": 100e-6},
     }
     body = slipfront.Body(slipfront.Mesh(**tables["plate"]), **tables["material"])

@@ -29,14 +29,16 @@ AT_S = 40e-6
 
 
 PLAIN = {"law": "slip_weakening", "mu_s": 0.6, "mu_k": 0.4, "d_c_m": 2.2e-6}
-RIGID = {name: table for name, table in CASE.items() if name != "base"} | {
+RIGID = CASE | {
+    "base": {"kind": "rigid"},
     "friction": PLAIN,
     "time": {"end_s": 60e-6},
     "output": CASE["output"] | {"history_interval_s": 3e-6},  # p is found between rows, which the tip passes
     "nucleation": {"x_m": 0.05, "half_length_m": 0.02, "taper_m": 0.005},
 }
 PRESSED = {  # by statics: p is not uniform, corners are relieved
-    "plate": {"width_m": 0.2, "height_m": 0.06, "element_size_m": 0.5e-3},
+    "plate": {"width_m": 0.2, "height_m": 0.06, "element_size_m": 0.5e-3, "corner": "relief"},
+    "base": {"kind": "rigid"},
     "material": CASE["material"],
     "loading": {"mean_pressure_Pa": 5e6, "shear_over_critical": 0.9},
     "friction": PLAIN | {"d_c_m": 1.5e-6},

@@ -555,7 +555,7 @@ def test_what_is_larger_is_said_with_its_error():
 
 
 def test_on_the_rigid_plane_the_error_of_the_mesh_is_told():
-    case = {name: table for name, table in STRIP.items() if name != "base"}
+    case = STRIP | {"base": {"kind": "rigid"}}
     found = [slipfront.predict_fronts(case, plate={"element_size_m": h}) for h in (0.5e-3, 0.25e-3)]
     note = next(note for note in found[0].attrs["notes"] if note.startswith("slip changes the pressure"))
     told = float(re.search(r"by (\S+) % for", note)[1])
@@ -576,7 +576,8 @@ def test_nucleation_length_of_an_edge_is_of_a_patch_from_it():
 
 def test_a_prediction_by_a_run_without_a_length_says_so(tmp_path):
     note = "the friction law has no length: its fracture energy is that of the run's mesh"
-    case = {"plate": {"element_size_m": 5e-3}, "event": {"kind": "left"}}
+    friction = {"friction": {"law": "velocity_weakening"}, "base": {"kind": "rigid"}}
+    case = {"plate": {"element_size_m": 5e-3}, "event": {"kind": "left"}} | friction
     of_mesh = slipfront.run(case, output=tmp_path / "out", progress=False)
     assert note in slipfront.predict_fronts(of_mesh).attrs["notes"]
     assert note not in slipfront.predict_fronts(of_mesh, fracture_energy_J_per_m2=GAMMA).attrs["notes"]

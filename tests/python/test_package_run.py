@@ -444,7 +444,8 @@ loading = {mean_pressure_Pa = 5e6, tilt_difference_m = 2e-4, shear_over_critical
 """,
     "force": """
 event.kind = "left"
-plate = {element_size_m = 5e-3, corner = "fillet", fillet_radius_m = 0.02}
+plate = {element_size_m = 5e-3, width_m = 0.2, height_m = 0.1, corner = "fillet", fillet_radius_m = 0.02}
+base.kind = "rigid"
 time.end_s = 1e-5
 loading = {normal_force_N_per_m = 1e6, shear_force_N_per_m = 5e5}
 """,
@@ -524,7 +525,9 @@ V_w_m_per_s = 0.2
 tip_slip_rate_m_per_s = 0.05
 """,
     "sequence": """
-plate.element_size_m = 4e-3
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3, corner = "relief"}
+base.kind = "rigid"
+friction.law = "velocity_weakening"
 event.kind = "spontaneous"
 [sequence]
 max_events = 3
@@ -539,7 +542,8 @@ shear_stiffness_Pa = 1e9
 normal_stiffness_Pa = 0.0
 """,
     "slow slip": """
-plate = {element_size_m = 4e-3, corner = "none"}
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3}
+base.kind = "rigid"
 loading.mean_pressure_Pa = 5e6
 friction = {law = "rate_and_state_aging", a = 0.01, b = 0.015, d_c_m = 1e-6, V_i_m_per_s = 1e-6}
 event.kind = "spontaneous"

@@ -195,9 +195,11 @@ def test_probes_that_are_not_finite_are_refused(run, capsys):
 CRACK = """\
 title = "crack"
 [plate]
+width_m = 0.2
 height_m = 0.1
 element_size_m = 4e-3
-corner = "none"
+[base]
+kind = "rigid"
 [loading]
 method = "prestress"
 [prestress]

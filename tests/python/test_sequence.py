@@ -13,7 +13,7 @@ import pytest
 import slipfront
 import xarray as xr
 from common import refusal, require_same_bytes, rows_of
-from package_cases import program, refused, results_of, write_case
+from package_cases import PLATE, TILT, program, refused, results_of, write_case
 from refusals import flip, replace
 from report_pages import data_of, page_of
 from slipfront.figures.sequence import main
@@ -26,14 +26,15 @@ N_EVENTS = 4
 # A fraction of a second.
 SEQUENCE = f"""\
 title = "coarse sequence"
-plate.element_size_m = 4e-3
+{PLATE}{TILT}plate.element_size_m = 4e-3
 event.kind = "spontaneous"
 sequence.max_events = {N_EVENTS}
 """
 # Slow slip and two events in a second.
 STICK_SLIP = """\
 title = "coarse stick-slip"
-plate = {width_m = 0.1, height_m = 0.05, element_size_m = 2e-3, corner = "none"}
+plate = {width_m = 0.1, height_m = 0.05, element_size_m = 2e-3}
+base.kind = "rigid"
 material.stiffness_damping_s = 1e-6
 loading.mean_pressure_Pa = 5e6
 friction = {law = "rate_and_state_aging", a = 0.010, b = 0.015, d_c_m = 0.5e-6, V_i_m_per_s = 1e-6}
@@ -130,8 +131,9 @@ def test_a_study_is_of_one_event(study, tmp_path):
 
 # Slip spreads from the pushed end past the margin, where the tilt lifts the other one.
 SPREADING = """\
-plate = {element_size_m = 4e-3, corner = "none"}
-friction = {mu_s = 0.7, mu_k = 0.3}
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3}
+base.kind = "rigid"
+friction = {law = "velocity_weakening", mu_s = 0.7, mu_k = 0.3}
 event.kind = "spontaneous"
 sequence.max_events = 6
 [loading]
@@ -501,10 +503,10 @@ def test_the_picture_shows_slow_slip(stick_slip):
     assert "m/s" in bar.get_ylabel()
 
 
-WEAKENING = """
-plate.element_size_m = 2e-3
+WEAKENING = f"""
+{PLATE.replace('friction.law = "velocity_weakening"', "")}{TILT}plate.element_size_m = 2e-3
 material.stiffness_damping_s = 1e-6
-friction = {law = "slip_weakening", mu_s = 0.7, mu_k = 0.5, d_c_m = 4e-6}
+friction = {{law = "slip_weakening", mu_s = 0.7, mu_k = 0.5, d_c_m = 4e-6}}
 event.kind = "spontaneous"
 loading.critical_margin = 0.05
 sequence.max_events = 6
