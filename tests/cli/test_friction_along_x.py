@@ -25,9 +25,9 @@ top = "absorbing"
 kind = "rigid"
 [friction]
 law = "slip_weakening"
-d_c_m = 4e-6
 file = "friction.csv"
 between_rows = "stepwise"
+d_c_m = 4e-6
 """
 TABLE = "x_m,mu_s,mu_k\n0,0.6,0.3\n0.07,5,5\n0.1,5,5\n"
 RESULTS = ("fronts.csv", "energy.csv", "static.csv", "interface.h5", "case.resolved.toml", "friction.csv")
@@ -131,9 +131,7 @@ def test_info_names_the_worst_node(program, case, tmp_path):
 
 # --- Laws that the case file gives as tables
 
-UNIFORM = CASE.replace(
-    'file = "friction.csv"\nbetween_rows = "stepwise"\n', "mu_s = 0.6\nmu_k = 0.3\nd_c_m = 4e-6\n"
-)
+UNIFORM = CASE.replace('file = "friction.csv"\nbetween_rows = "stepwise"\n', "mu_s = 0.6\nmu_k = 0.3\n")
 BY_TABLE = UNIFORM.replace(
     'law = "slip_weakening"\nmu_s = 0.6\nmu_k = 0.3\nd_c_m = 4e-6\n',
     'law = "slip_table"\ntable_slip_m = [0, 4e-6]\ntable_mu = [0.6, 0.3]\n',

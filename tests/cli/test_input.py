@@ -8,7 +8,7 @@ import pytest
 from common import COARSE, finished, one_line, refusal, require_done, require_same_bytes, run_json, sets
 
 PRESTRESSED = """\
-plate = {element_size_m = 5e-3, corner = "none"}
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 5e-3}
 loading.method = "prestress"
 prestress.file = "table.csv"
 event.kind = "nucleation"
@@ -106,7 +106,7 @@ def test_table_in_another_unit(program, write_case, tmp_path):
     rows = "".join(f"{x},2.1e6,5e6\n" for x in range(0, 201, 10))
     (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n" + rows)
     note = (
-        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.1 m: 20 of its 21 "
+        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.2 m: 20 of its 21 "
         "rows lie beyond it; are its positions in m?"
     )
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):

@@ -88,7 +88,6 @@ LATE = [
     # The margins at both ends leave nothing inside; mu_s comes first, or the margin that is set.
     ("mu_s = 1.2 # here\n[loading]\nedge_margin_m = 0.0999\n", None, ["mu_s", "edge_margin_m"]),
     ("mu_s = 1.2\n", "loading.edge_margin_m=0.0999", []),
-    ("[loading]\nedge_margin_m = 0.0999 # here\ntilt_left_m = 0.37e-3\ntilt_right_m = 0.037e-3\n", None, []),
 ]
 
 

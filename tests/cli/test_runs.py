@@ -319,7 +319,7 @@ PRESTRESSED = """
 loading.method = "prestress"
 prestress.file = "table.csv"
 base.kind = "rigid"
-friction = {law = "slip_weakening", mu_s = 0.6, mu_k = 0.3, d_c_m = 4e-6, regularisation = "pressure", relaxation_time_s = 2e-6}
+friction = {law = "slip_weakening", mu_k = 0.3, regularisation = "pressure", relaxation_time_s = 2e-6}
 event.kind = "nucleation"
 nucleation = {x_m = 0.05, half_length_m = 0.015, taper_m = 5e-3}
 time.end_s = 60e-6

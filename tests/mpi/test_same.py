@@ -67,7 +67,8 @@ CASES = {
     "rounded corners": {"plate": 'corner = "fillet"\nfillet_radius_m = 6e-3'},
     "spontaneous": {"rest": '[event]\nkind = "spontaneous"'},
     "ramp": {
-        "rest": '[event]\nkind = "spontaneous"\n[loading]\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3'
+        "loading": TILT + '\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3',
+        "rest": '[event]\nkind = "spontaneous"',
     },
     "no sub-steps": {"time": "interface_substeps = 1"},
     "single precision": RELIEF | {"time": 'precision = "single"'},

@@ -446,6 +446,7 @@ loading = {mean_pressure_Pa = 5e6, tilt_difference_m = 2e-4, shear_over_critical
 event.kind = "left"
 plate = {element_size_m = 5e-3, width_m = 0.2, height_m = 0.1, corner = "fillet", fillet_radius_m = 0.02}
 base.kind = "rigid"
+friction.law = "velocity_weakening"
 time.end_s = 1e-5
 loading = {normal_force_N_per_m = 1e6, shear_force_N_per_m = 5e5}
 """,

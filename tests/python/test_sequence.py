@@ -225,10 +225,12 @@ def test_slow_slip_and_events_follow_one_another(stick_slip):
         since_row_s = float(slow["time_s"][0] - now_s)
         assert 0 <= since_row_s <= 1.001 * event["time_s"][1]
         np.testing.assert_allclose(slow["time_s"][-1], begin_s, rtol=1e-12)
-        # Where contact is open nothing holds the slip.
+        # The event's last row lies up to an interval before its end, in which slip slows down. Where
+        # contact is open nothing holds the slip.
         expected_m = slip_m + since_row_s * rate_m_per_s
-        np.testing.assert_allclose((slow["slip_m"][0] - expected_m)[touch], 0, atol=1e-12)
-        np.testing.assert_array_equal(slow["psi"][0], psi)
+        off_m = np.abs(slow["slip_m"][0] - expected_m)[touch]
+        assert off_m.max() <= 0.1 * since_row_s * np.abs(rate_m_per_s).max() + 1e-15
+        np.testing.assert_allclose(slow["psi"][0], psi, rtol=1e-3)
         np.testing.assert_array_equal(slow["psi"][-1], event["psi"][0])
         # Velocities of an event are half a sub-step apart from its displacements.
         rate = event["slip_rate_m_per_s"][0].to_numpy()
