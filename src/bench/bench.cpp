@@ -129,7 +129,10 @@ mesh::Plate plate_of(int columns) {
   return {.width_m = width_m,
           .height_m = height_m,
           .element_size_m = width_m / columns,
-          .corner = mesh::Corner::relief};
+          .corner = mesh::Corner::relief,
+          .relief_length_m = 5e-3,
+          .relief_height_m = 0.5e-3,
+          .relief_depth_m = 10e-3};
 }
 
 /// The plate pressed on the plane, that begins to slip on its left half.
