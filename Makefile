@@ -30,7 +30,7 @@ PROGRAM := $(BUILD)/slipfront
 # Whether warnings are errors: ON in continuous integration, whose compilers are known.
 WERROR ?= OFF
 
-.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices andrews1976 bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz fuzz-cases sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices andrews1976 bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz deep-check fuzz-cases sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -283,6 +283,12 @@ fuzz: packages  ## files that are made up, for every reader of files, FUZZ_SECON
 	cmake --preset asan
 	cmake --build --preset asan --target fuzzers
 	@scripts/run-fuzzers build/asan $(FUZZ_SECONDS)
+
+# The state of the sources is a sum of all that clang compiles.
+SOURCES_SUM = git ls-files -z -- '*.cpp' '*.hpp' '*.in' '*CMakeLists.txt' .clang-tidy | xargs -0 sha256sum | sha256sum | cut -c1-64
+deep-check:  ## tidy, sanitize and fuzz, unless these sources have passed them: .ci/checked, which this renews
+	@if [ "$$($(SOURCES_SUM))" = "$$(cat .ci/checked)" ]; then echo "deep-check: these sources have passed"; else \
+	  $(MAKE) --no-print-directory tidy sanitize fuzz FUZZ_SECONDS=10 && $(SOURCES_SUM) > .ci/checked; fi
 
 fuzz-cases: ready  ## random cases of all keys for validate, info, fracture and run; SEED=, CASES= to repeat some
 	$(PYTHON) tests/fuzz/cases.py $(PROGRAM) --keep build/fuzz-cases $(if $(SEED),--seed $(SEED)) $(if $(CASES),--cases $(CASES))
