@@ -143,14 +143,14 @@ def is_number(value: Any) -> bool:
         return False
 
 
-def number(file: Path, table: dict[str, Any], key: str) -> float:
-    """Number of a dotted key of a file's table."""
+def number(file: Path, table: dict[str, Any], key: str, finite: bool = True) -> float:
+    """Number of a dotted key of a file's table; inf is none unless `finite` is false."""
     value: Any = table
     for part in key.split("."):
         if not isinstance(value, dict) or part not in value:
             raise DataError(f"{file}: no entry '{key}'")
         value = value[part]
-    if not is_number(value):
+    if not is_number(value) and (finite or value not in (np.inf, -np.inf)):
         raise DataError(f"{file}: '{key}' is not a number")
     return float(value)
 

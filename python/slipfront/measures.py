@@ -360,9 +360,10 @@ def field_of(history: Arrays, name: str, *, dims: int = 2, finite: bool = False)
     unit = getattr(given, "attrs", {}).get("units", unit_of(name))
     if unit != unit_of(name):
         raise CaseError(f"history['{name}'] is in {unit}; give it in {unit_of(name)}")
-    along = [getattr(history[axis], "dims", ()) for axis in ("time_s", "x_m")]
-    if dims == 2 and getattr(given, "dims", ()) == along[1] + along[0] != along[0] + along[1]:
-        return np.ascontiguousarray(values.T)
+    if dims == 2:
+        along = [getattr(history[axis], "dims", ()) for axis in ("time_s", "x_m")]
+        if getattr(given, "dims", ()) == along[1] + along[0] != along[0] + along[1]:
+            return np.ascontiguousarray(values.T)
     return values
 
 

@@ -252,8 +252,8 @@ class OpenRun(Opened):
         return lines
 
     def parameter(self, key: str) -> float:
-        """Number of a dotted key of the case."""
-        return number(self.folder / "case.resolved.toml", self._case, key)
+        """Number of a dotted key of the case, inf among them."""
+        return number(self.folder / "case.resolved.toml", self._case, key, finite=False)
 
     def fact(self, key: str) -> float:
         """Number of a dotted key of run.json."""
@@ -448,12 +448,14 @@ class OpenRun(Opened):
         coordinates |= variables(("time_s",), {"time_s": time_s})
         return xr.Dataset(records, coordinates, self._attributes())
 
-    def absolute_stress(self, records: xr.Dataset) -> xr.Dataset:
+    def absolute_stress(self, records: xr.Dataset | None) -> xr.Dataset:
         """The whole stress of `probes` or `snapshots`, Pa, positive in tension: as it is recorded, but NaN
         where prescribed tractions determine no state before the event: stress_xx_Pa, stress_zz_Pa in plane
         strain, and all of tractions that vary along x. To files of versions that recorded the change the
         state of run.info["prestress"] is added. Raises DataError where the records have no stress."""
         before = self.prestress
+        if records is None:
+            raise DataError(f"{self.folder}: the run has no such records")
         names = [name for name in STRESSES if name in records]
         require(bool(names), self.folder, "these records have no stress")
         whole = {}

@@ -191,6 +191,7 @@ def open_sequence(folder: Path, kept: Kept | None = None) -> OpenSequence:
 
 def opened(folder: Path, kept: Kept | None = None) -> OpenRun | OpenSequence:
     """By what the folder holds."""
+    require(not (folder / "sweep.json").exists(), folder, "is a sweep; open it by slipfront.sweep.open_sweep")
     if is_sequence(folder):
         return open_sequence(folder, kept)
     return open_run(folder, kept)

@@ -132,6 +132,28 @@ def test_damage_is_refused_when_the_file_is_used(tmp_path):
         slipfront.open(tmp_path / "nowhere")
 
 
+def test_what_is_not_there_is_refused_by_a_line(folder, tmp_path):
+    run = slipfront.open(folder)
+    assert run.parameter("loading.shear_stiffness_Pa") == np.inf
+    assert run.probes is None
+    with pytest.raises(slipfront.DataError, match="the run has no such records"):
+        run.absolute_stress(run.probes)
+    (tmp_path / "sweep.json").write_text("{}")
+    with pytest.raises(slipfront.DataError, match=r"is a sweep; open it by slipfront.sweep.open_sweep"):
+        slipfront.open(tmp_path)
+
+
+@pytest.mark.parametrize("missing", ["time_s", "x_m", "slip_rate_m_per_s", "p_Pa"])
+def test_a_history_without_an_array_is_refused(folder, missing):
+    run = slipfront.open(folder)
+    arrays = {
+        name: run.history[name].to_numpy() for name in ("time_s", "x_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")
+    }
+    del arrays[missing]
+    with pytest.raises(slipfront.CaseError, match=missing):
+        slipfront.event_of_history(run.case, arrays)
+
+
 def test_units_of_names():
     names = ("U_s_J_per_m3", "friction_work_J_per_m", "v_m_per_s", "t_Pa", "d_c_m", "mu_s")
     assert [unit_of(name) for name in names] == ["J/m3", "J/m", "m/s", "Pa", "m", "1"]
