@@ -280,6 +280,10 @@ Condition base_graded() {
 Condition graded() {
   return {Message("{} > 0", Key("plate.coarsenings")), [](const Case& c) { return c.plate.coarsenings > 0; }};
 }
+Condition a_body_graded() {
+  return {Message("{} > 0 or {} > 0", Key("plate.coarsenings"), Key("base.coarsenings")),
+          [](const Case& c) { return graded().holds(c) || base_graded().holds(c); }};
+}
 Condition nucleated() {
   return {Message("{} = nucleation", Key("event.kind")),
           [](const Case& c) { return c.event == EventKind::nucleation; }};
@@ -704,7 +708,7 @@ void add_time(Entries& all) {
            "rows of cells next to the interface that are sub-cycled");
   time.add("interface_substeps", &TimeStepping::interface_substeps, between(1, 1e6),
            "sub-steps per time step there; 1 for none");
-  time.only_with = graded();
+  time.only_with = a_body_graded();
   time.add("local_steps", &TimeStepping::local_steps, "larger elements take larger time steps");
   time.only_with = {};
   time.add("end_s", &TimeStepping::end_s, above(0), "the event ends, unless it has come to rest before");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "base/error.hpp"
 #include "mesh/plate.hpp"
@@ -33,12 +35,18 @@ bool is_whole(double count) {
   return std::abs(count - std::round(count)) <= 1e-6 * count && count > 0.5;
 }
 
-/// Nodes of the plate and a base; none where the elements do not fit them.
+/// Nodes of the plate and a base; none where the elements do not fit them, or too few of the smallest ones
+/// lie next to the interface.
 std::optional<std::int64_t> n_nodes(const input::Case& config) {
   try {
-    auto n = n_nodes_of(mesh::make_interface(config.plate));
+    std::vector<mesh::Mesh> bodies = {mesh::make_interface(config.plate)};
     if (input::has_base_body(config))
-      n += n_nodes_of(mesh::make_interface(input::base_plate(config), "base"));
+      bodies.push_back(mesh::make_interface(input::base_plate(config), "base"));
+    std::int64_t n = 0;
+    for (const auto& body : bodies) {
+      if (body.grid.rows <= config.time.interface_rows) return {};
+      n += n_nodes_of(body);
+    }
     return n;
   } catch (const UserError&) {
     return {};

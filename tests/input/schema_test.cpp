@@ -381,6 +381,8 @@ TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
 }
 
 TEST(Schema, ABodyBelowHasItsKeys) {
+  const std::string graded = "base = {coarsenings = 1, fine_height_m = 0.01}\ntime.local_steps = false\n";
+  EXPECT_FALSE(parsed(graded).time.local_steps);
   EXPECT_EQ(parsed("base.density_kg_per_m3 = 7850").base.material.density_kg_per_m3, 7850);
   expect_message(parse_error("base = {kind = 'rigid', density_kg_per_m3 = 7850}"),
                  "c.toml:1: ", "base.kind = body");

@@ -255,6 +255,20 @@ def test_the_cheapest_mesh_resolves_the_process_zone(changed, least_elements):
     assert taken.cheapest_mesh.element_size_m == pytest.approx(found.element_size_m, rel=1e-12)
 
 
+def test_the_cheapest_mesh_has_the_rows_that_are_sub_cycled():
+    case = {
+        "plate": {"width_m": 0.2, "height_m": 0.08},
+        "material": {"youngs_modulus_Pa": 50e9, "poissons_ratio": 0.25, "density_kg_per_m3": 2650},
+        "loading": {"mean_pressure_Pa": 5e6},
+        "friction": {"mu_s": 0.7, "mu_k": 0.5, "d_c_m": 3e-6},
+    }
+    for base in ({}, {"kind": "rigid"}):
+        found = slipfront.info(case, base=base).cheapest_mesh
+        size = {"element_size_m": found.element_size_m, "coarsenings": found.coarsenings}
+        like = base or {"coarsenings": found.coarsenings}
+        assert slipfront.info(case, plate=size, base=like).n_nodes == found.n_nodes
+
+
 def test_datasets_of_others_do():
     history = xr.Dataset(
         {
