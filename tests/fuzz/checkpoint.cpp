@@ -32,7 +32,7 @@ input::Case tiny_case() {
   config.plate.height_m = 0.02;
   config.plate.element_size_m = 0.01;
   config.base.kind = input::BaseKind::rigid;
-  config.friction = interface::VelocityWeakening{};
+  config.friction = interface::VelocityWeakening {};
   config.event = interface::EventKind::spontaneous;
   config.time.interface_rows = 1;
   config.time.interface_substeps = 2;
