@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from slipfront._core import Stepper as Stepper
     from slipfront._core import WaveSpeeds as WaveSpeeds
     from slipfront._core import WellPosedness as WellPosedness
-    from slipfront._core import version as version
     from slipfront.batch import Batch as Batch
     from slipfront.batch import event_of_history as event_of_history
     from slipfront.contour import ContourIntegral as ContourIntegral
@@ -61,6 +60,7 @@ if TYPE_CHECKING:
     from slipfront.running import run as run
     from slipfront.running import run_with_law as run_with_law
     from slipfront.running import stable_step_s as stable_step_s
+    from slipfront.running import version as version
     from slipfront.running import wave_speeds as wave_speeds
     from slipfront.running import well_posedness as well_posedness
     from slipfront.tip_fit import TipFit as TipFit
@@ -72,7 +72,7 @@ if TYPE_CHECKING:
 _NAMES = {
     "_core": (
         "BatchEvent Body ExponentialFit Info Interface InterfaceState Mesh Rupture Stepper WaveSpeeds "
-        "WellPosedness version"
+        "WellPosedness"
     ),
     "batch": "Batch event_of_history",
     "contour": "ContourIntegral contour_integral",
@@ -88,7 +88,7 @@ _NAMES = {
     "opened": "OpenRun",
     "opened_sequence": "OpenSequence open",
     "other_codes": "read_seissol_fault_receivers read_sem2dpack read_uguca",
-    "running": "case info resume run run_with_law stable_step_s wave_speeds well_posedness",
+    "running": "case info resume run run_with_law stable_step_s version wave_speeds well_posedness",
     "tip_fit": "TipFit fit_tip fit_tips tip_field",
 }
 _PLACES = {name: module for module, names in _NAMES.items() for name in names.split()}

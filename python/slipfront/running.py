@@ -104,6 +104,11 @@ def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping
     return _core.Case(path(case, "case"), pairs)
 
 
+def version() -> str:
+    """Version and commit that the compiled module was built from."""
+    return _core.version()
+
+
 def case(case: CaseLike, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> _core.Case:
     """A case with its changes, given as for `run`, checked as far as its keys tell; `toml` has every key."""
     return make_case(case, changes, tables)
