@@ -21,7 +21,7 @@ from typing import Any
 # Where the main front is compared: clear of the trigger zone with its margin, and of the far edge.
 FROM_M, TO_M = 0.04, 0.19
 Speeds = dict[float, float]  # V_tip by place
-WIDTH_M = 0.2  # of the plate
+WIDTH_M = 0.2
 SIZES_M = (2e-3 / 3, 1e-3 / 3)
 GRADINGS: tuple[tuple[str, dict[str, str]], ...] = (
     ("uniform", {}),

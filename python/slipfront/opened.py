@@ -280,8 +280,8 @@ class OpenRun(Opened):
         the records; NaN where they determine none. None without prescribed tractions."""
         if not self.prescribed:
             return None
-        told = self.place.info.get("prestress")  # there was none in older files
-        found = told if isinstance(told, dict) else {}
+        stored = self.place.info.get("prestress")  # absent from files of earlier versions
+        found = stored if isinstance(stored, dict) else {}
         before: dict[str, Any] = {n: found.get(n) for n in PROBE_FIELDS if n.startswith("stress")}
         if self.entry("material", "plane") == "stress":
             before["stress_zz_Pa"] = 0.0

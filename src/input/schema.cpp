@@ -606,9 +606,9 @@ must be within these magnitudes, beyond which products of them would leave the r
     text += fmt::format("| {} | {:g} | {:g} |\n", unit.empty() ? "others" : unit, least, most);
   text += R"(
 Defaults that are lengths or times are multiples of `plate.width_m`, of `plate.height_m` or of the time width_m / c_S
-in which a shear wave crosses the plate (of two bodies with the slower one's c_S). `case.resolved.toml` beside the results has the values. Without any key two
-bodies of PMMA, each 100 mm wide and 50 mm high, are pressed together by 0.25 mm at the left and 0.2 mm at the right,
-and sheared until slip begins by itself.
+in which a shear wave crosses the plate (of two bodies with the slower one's c_S). `case.resolved.toml` beside the
+results has the values. Without any key two bodies of PMMA, each 100 mm wide and 50 mm high, are pressed together by
+0.25 mm at the left and 0.2 mm at the right, and sheared until a front nucleates spontaneously.
 
 )";
   return text + reference_of([](const Entry&) { return true; });

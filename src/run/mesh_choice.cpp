@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "base/error.hpp"
 #include "mesh/plate.hpp"
+#include "motion/level.hpp"
 #include "run/choices.hpp"
 #include "stability/verdict.hpp"
 
@@ -35,18 +35,15 @@ bool is_whole(double count) {
   return std::abs(count - std::round(count)) <= 1e-6 * count && count > 0.5;
 }
 
-/// Nodes of the plate and a base; none where the elements do not fit them, or too few of the smallest ones
-/// lie next to the interface.
+/// Nodes of the plate and a base; none where the elements, or the rows that are sub-cycled, do not fit them.
 std::optional<std::int64_t> n_nodes(const input::Case& config) {
   try {
-    std::vector<mesh::Mesh> bodies = {mesh::make_interface(config.plate)};
-    if (input::has_base_body(config))
-      bodies.push_back(mesh::make_interface(input::base_plate(config), "base"));
-    std::int64_t n = 0;
-    for (const auto& body : bodies) {
-      if (body.grid.rows <= config.time.interface_rows) return {};
-      n += n_nodes_of(body);
-    }
+    const auto count = [&](const mesh::Mesh& body) {
+      motion::require_rows_fit(body, config.time);
+      return n_nodes_of(body);
+    };
+    auto n = count(mesh::make_interface(config.plate));
+    if (input::has_base_body(config)) n += count(mesh::make_interface(input::base_plate(config), "base"));
     return n;
   } catch (const UserError&) {
     return {};

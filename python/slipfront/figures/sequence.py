@@ -66,7 +66,7 @@ def phases(sequence: OpenSequence, most_rows: int, most_nodes: int) -> Phases:
 
 
 def slip_after_events(sequence: OpenSequence) -> np.ndarray:
-    """Since the tilt; under a law with a state with the slow slip before each event. [events, nodes]"""
+    """Slip since normal loading, with the slow slip of a law with a state. [events, nodes]"""
     slip, slow = sequence.slip.to_numpy(), sequence.slow
     if len(slow) == 0:
         return np.asarray(np.cumsum(slip, axis=0))
