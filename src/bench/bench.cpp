@@ -21,6 +21,7 @@
 #include "mesh/reorder.hpp"
 #include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
+#include "problem/problem.hpp"
 #include "run/needs.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
@@ -209,10 +210,11 @@ EventRun measure_event(int columns, int threads) {
   EventRun result{columns, columns / 2, threads};
   const auto monitor = [](std::int64_t, std::int64_t) { return true; };
   auto start = Clock::now();
-  const auto initial = run::make_initial_state(config, monitor);
+  const auto problem = problem::make_problem(config);
+  const auto initial = run::make_initial_state(problem, monitor);
   result.statics_s = seconds_since(start);
   start = Clock::now();
-  const auto event = run::run_from(config, initial, monitor, {.threads = threads});
+  const auto event = run::run_from(problem, initial, monitor, {.threads = threads});
   result.event_s = seconds_since(start);
   result.node_updates_per_s =
       static_cast<double>(event.event.steps) * event.node_updates_per_step / event.stepping_wall_s;

@@ -19,7 +19,7 @@
 #include "cli/print.hpp"
 #include "files/files.hpp"
 #include "fracture/prediction.hpp"
-#include "run/choices.hpp"
+#include "problem/problem.hpp"
 #include "run/initial_state.hpp"
 #include "run/notes.hpp"
 
@@ -92,7 +92,7 @@ std::string line_of(const run::FracturePrediction& p, const fracture::PredictedF
 void predict(const CaseArguments& arguments, const FractureOptions& options) {
   if (!options.output.empty()) require_own(options.output);
   const auto given = arguments.read();
-  const auto& config = given.config();
+  const auto problem = problem::make_problem(given.config());
   run::TipFriction friction;
   friction.x_m = {0};
   if (options.fracture_energy_J_per_m2)
@@ -100,16 +100,16 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
   if (options.residual_coefficient) friction.residual_coefficient = {*options.residual_coefficient};
   std::optional<run::FrontPredictor> predictor;
   try {
-    given.placing_errors([&] { return predictor.emplace(config), true; });
+    given.placing_errors([&] { return predictor.emplace(problem), true; });
   } catch (const UserError& error) {
-    if (!input::is_slow(config)) throw;
-    given.placing_errors([&] { return run::check(config); });  // else it is the case that is refused
+    if (!problem.is_slow()) throw;
+    given.placing_errors([&] { return run::check(problem); });  // else it is the case that is refused
     print_output(fmt::format("note: {}\n", run::no_static_state(error)));
     return;
   }
   const auto p = given.placing_errors([&] { return predictor->predict(friction, options.x_m); });
   const auto& of = p.of_fronts;
-  const double c_S = solid::shear_speed_m_per_s(config.material);
+  const double c_S = solid::shear_speed_m_per_s(problem.above().material);
   std::string text = fmt::format("statics of {}, {} nodes on the interface\n", p.bodies, p.n_nodes);
   text += fmt::format("first crack {:.4g} m: {}\n", of.first_length_m,
                       of.starts      ? "it runs"

@@ -15,7 +15,7 @@
 #include "cli/output.hpp"
 #include "files/text.hpp"
 #include "fracture/prediction.hpp"
-#include "run/choices.hpp"
+#include "problem/problem.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::cli {
@@ -56,36 +56,36 @@ void add_size(const run::Info& info, Listing& list) {
   list.add("cells", fmt::format("{}", info.n_cells));
 }
 
-void add_steps(const input::Case& config, const run::Info& info, Listing& list) {
+void add_steps(const Problem& problem, const run::Info& info, Listing& list) {
   list.add("largest stable step", fmt::format("{:.4g} s{}", info.stable_step_s,
                                               info.base_speeds ? ", the smaller one of the bodies" : ""));
   list.add("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
-                               config.time.interface_rows));
+                               problem.time.interface_rows));
   if (info.base_speeds)
     list.add("sub-steps in a step",
              fmt::format("of the plate {}, of the base {}, in the step above {}",
                          info.substeps_of_bodies.front(), info.substeps_of_bodies.back(),
                          std::lcm(info.substeps_of_bodies.front(), info.substeps_of_bodies.back())));
   list.add("steps to the end", fmt::format("{}", info.n_steps));
-  if (input::is_sequence(config))
+  if (problem.is_sequence())
     list.add("sequence", fmt::format("at most {} events; steps, disk and time are those of one to time.end_s",
-                                     config.sequence.max_events));
+                                     problem.sequence.max_events));
   if (info.needs.slow_steps > 0)
     list.add("slow slip",
              fmt::format("about {:.2g} steps to {}, {:.3g} GB; time and disk have them once",
                          info.needs.slow_steps,
-                         std::isfinite(config.sequence.end_s) || !config.sequence.path.times_s.empty()
+                         std::isfinite(problem.sequence.end_s) || !problem.sequence.path.times_s.empty()
                              ? "the end of the loading"
                              : "the first event",
                          info.needs.slow_bytes * 1e-9));
-  const auto& machine = config.machine;
+  const auto& machine = problem.above().machine;
   if (std::isfinite(machine.shear_stiffness_Pa))
     list.add("machine along x", fmt::format("{:g} Pa", machine.shear_stiffness_Pa));
   if (std::isfinite(machine.normal_stiffness_Pa))
     list.add("machine downwards", machine.normal_stiffness_Pa > 0
                                       ? fmt::format("{:g} Pa", machine.normal_stiffness_Pa)
                                       : std::string("dead load"));
-  if (const auto& path = config.sequence.path; !path.times_s.empty())
+  if (const auto& path = problem.sequence.path; !path.times_s.empty())
     list.add("path of the loading", fmt::format("{} points, to {:g} m at {:g} s", path.times_s.size(),
                                                 path.shears_m.back(), path.times_s.back()));
   if (info.needs.ramp_steps > 0)
@@ -199,20 +199,20 @@ void add_rupture(const run::RuptureOutlook& rupture, std::string_view law, Listi
   add_lengths(rupture, law, list);
 }
 
-void add_mesh_choice(const input::Case& config, const run::MeshChoice& mesh, Listing& list) {
-  const bool is_own = mesh.coarsenings == config.plate.coarsenings &&
-                      std::abs(mesh.element_size_m / config.plate.element_size_m - 1) < 1e-6;
+void add_mesh_choice(const Problem& problem, const run::MeshChoice& mesh, Listing& list) {
+  const bool is_own = mesh.coarsenings == problem.above().plate.coarsenings &&
+                      std::abs(mesh.element_size_m / problem.above().plate.element_size_m - 1) < 1e-6;
   if (is_own) {
     list.add("cheapest mesh for this zone", "this one");
     return;
   }
-  list.add("cheapest mesh for this zone",
-           fmt::format(
-               "plate.element_size_m = {:.8g}, plate.coarsenings = {}{}: {:.3g} elements in the zone, "
-               "{} nodes",
-               mesh.element_size_m, mesh.coarsenings,
-               input::has_base_body(config) ? fmt::format(", base.coarsenings = {}", mesh.coarsenings) : "",
-               mesh.process_zone_elements, mesh.n_nodes));
+  list.add(
+      "cheapest mesh for this zone",
+      fmt::format("plate.element_size_m = {:.8g}, plate.coarsenings = {}{}: {:.3g} elements in the zone, "
+                  "{} nodes",
+                  mesh.element_size_m, mesh.coarsenings,
+                  problem.has_below() ? fmt::format(", base.coarsenings = {}", mesh.coarsenings) : "",
+                  mesh.process_zone_elements, mesh.n_nodes));
 }
 
 void add_stability_of_sliding(const run::Info& info, Listing& list) {
@@ -264,24 +264,24 @@ void add_shared(const run::Info::Shared& shared, Listing& list) {
 
 void print_info(const CaseArguments& arguments, const std::optional<int>& n_processes) {
   const auto given = arguments.read();
-  const auto& config = given.config();
-  const auto info = given.placing_errors([&] { return run::info(config, n_processes); });
+  const auto problem = problem::make_problem(given.config());
+  const auto info = given.placing_errors([&] { return run::info(problem, n_processes); });
   Listing list;
-  if (!config.title.empty()) list.add("title", files::one_line(config.title));
+  if (!problem.source.title.empty()) list.add("title", files::one_line(problem.source.title));
   add_wave_speeds(info, list);
   add_size(info, list);
-  add_steps(config, info, list);
+  add_steps(problem, info, list);
   add_costs(info, list);
   if (info.shared) add_shared(*info.shared, list);
-  if (info.loads) add_loads(*info.loads, config.machine.pusher.is_there(), input::heals(config), list);
-  if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
+  if (info.loads) add_loads(*info.loads, problem.above().machine.pusher.is_there(), problem.heals(), list);
+  if (const double speed_m_per_s = shear_speed_in_event_m_per_s(problem); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
-                         speed_m_per_s, speed_m_per_s * config.time.end_s));
+                         speed_m_per_s, speed_m_per_s * problem.time.end_s));
   add_stability_of_sliding(info, list);
-  add_rupture(info.rupture, config.friction.name(), list);
+  add_rupture(info.rupture, problem.friction.law.name(), list);
   if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);
-  if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
+  if (info.cheapest_mesh) add_mesh_choice(problem, *info.cheapest_mesh, list);
   for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);
   for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);
   print_output(list.text);

@@ -15,8 +15,8 @@
 #include "cli/print.hpp"
 #include "fracture/passage.hpp"
 #include "fronts/fit.hpp"
+#include "problem/source.hpp"
 #include "results/folder.hpp"
-#include "run/choices.hpp"
 #include "run/needs.hpp"
 #include "run/sequence_session.hpp"
 #include "run/session.hpp"
@@ -104,13 +104,13 @@ std::string fracture_text(const run::Result& result, std::size_t f) {
   const double gamma = fronts::median(work), G = fronts::median(G_slip), zone = fronts::median(zone_m);
   if (!(gamma > 0)) return {};
   auto text = fmt::format("  fracture energy {:.3g} J/m2 in the median", gamma);
-  if (!run::has_fracture_energy(result.config)) text += " (of this mesh: the law has no length)";
+  if (!run::has_fracture_energy(result.problem)) text += " (of this mesh: the law has no length)";
   // Few rows are those of a tip that hardly ran, or ran above the limiting speed.
   const auto n_known = std::ranges::count_if(G_slip, [](double g) { return std::isfinite(g); });
   if (2 * n_known > std::ssize(G_slip)) text += fmt::format(", G by slip {:.3g} J/m2", G);
   if (std::isfinite(zone))
     text += fmt::format(", cohesive zone {:.2g} m, {:.2g} elements", zone,
-                        zone / result.config.plate.element_size_m);
+                        zone / result.problem.element_size_m());
   return text + "\n";
 }
 
@@ -119,12 +119,12 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
   if (initial.prescribed)
     print("prescribed tractions, t/p {} to {:.4g}{}\n", initial.subcritical.peak_ratio < 0 ? "down" : "up",
           initial.subcritical.peak_ratio,
-          result.config.prestress.file.empty()
+          result.problem.prestress->file.empty()
               ? ""
               : fmt::format(" at x = {:.4g} m", initial.subcritical.peak_x_m));
   else if (initial.ramp)
     print_ramp(*initial.ramp, initial.critical_shear_m);
-  else if (statics::is_sheared_by_force(result.config.loading))
+  else if (statics::is_sheared_by_force(result.problem.loading))
     print("shear force {:.5g} N/m, {:.4g} of the critical one, t/p up to {:.4g} at x = {:.4g} m\n",
           initial.loads->shear_force_N_per_m,
           initial.loads->shear_force_N_per_m / initial.loads->critical_shear_force_N_per_m,
@@ -132,7 +132,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
   else
     print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.subcritical.peak_x_m,
           initial.critical_shear_m);
-  if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(result.config); speed_m_per_s > 0)
+  if (const double speed_m_per_s = shear_speed_in_event_m_per_s(result.problem); speed_m_per_s > 0)
     print("the upper edge moves to +x at {:.3g} m/s during the event (loading.shear_speed_over_c_L)\n",
           speed_m_per_s);
   print(
@@ -181,12 +181,20 @@ run::SessionHooks hooks(bool quiet) {
   return hooks;
 }
 
+/// The case that the command names, perhaps one to compare with.
+struct GivenCase {
+  input::CaseFile file;
+  Problem problem;
+  explicit GivenCase(input::CaseFile read)
+      : file(std::move(read)), problem(problem::make_problem(file.config())) {}
+};
+
 run::Finished run_or_go_on(const RunArguments& options, results::ResultFolder& folder,
-                           const std::optional<input::CaseFile>& given) {
+                           const std::optional<GivenCase>& given) {
   const auto hooks = cli::hooks(options.quiet);
-  if (options.restart) return run::resume(folder, given ? &given->config() : nullptr, options.session, hooks);
-  return given->placing_errors(
-      [&] { return run::run_into(folder, given->config(), options.session, hooks); });
+  if (options.restart) return run::resume(folder, given ? &given->problem : nullptr, options.session, hooks);
+  return given->file.placing_errors(
+      [&] { return run::run_into(folder, given->problem, options.session, hooks); });
 }
 
 void print_event(std::size_t number, const record::SequenceEvent& e) {
@@ -199,19 +207,18 @@ void print_event(std::size_t number, const record::SequenceEvent& e) {
 }
 
 void run_sequence(const RunArguments& options, results::ResultFolder& folder,
-                  const std::optional<input::CaseFile>& given) {
+                  const std::optional<GivenCase>& given) {
   const auto hooks = cli::hooks(options.quiet);
   const run::EventDone done = [&](std::size_t number, const record::SequenceEvent& event) {
     if (!options.quiet) print_event(number, event);
   };
   if (!options.quiet && given)
-    for (const auto& note : given->notes()) print("note: {}\n", note);
+    for (const auto& note : given->file.notes()) print("note: {}\n", note);
   const auto finished =
       options.restart
-          ? run::resume_sequence(folder, given ? &given->config() : nullptr, options.session, hooks, done)
-          : given->placing_errors([&] {
-              return run::run_sequence_into(folder, given->config(), options.session, hooks, done);
-            });
+          ? run::resume_sequence(folder, given ? &given->problem : nullptr, options.session, hooks, done)
+          : given->file.placing_errors(
+                [&] { return run::run_sequence_into(folder, given->problem, options.session, hooks, done); });
   if (options.quiet) return;
   const auto& strongest = record::strongest(finished.loading);
   print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal,
@@ -226,8 +233,8 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
 }
 
 void run_case(const CaseArguments& arguments, RunArguments& options) {
-  std::optional<input::CaseFile> given;
-  if (!arguments.file.empty()) given = arguments.read();
+  std::optional<GivenCase> given;
+  if (!arguments.file.empty()) given.emplace(arguments.read());
   const bool compares_nothing = !given && !arguments.set.empty();
   if (options.restart ? options.dir || options.overwrite || compares_nothing : !given)
     throw UserError(
@@ -236,7 +243,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
   options.take_folder_of(arguments.file);
   results::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
-    if (given) run::require_same_case(given->config(), folder.dir());
+    if (given) require_same_case(given->problem.source, problem::read_problem(folder.dir()).source);
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }
@@ -244,20 +251,20 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
   if (!options.restart) {
     folder.require_empty(options.overwrite);
     // What the machine cannot hold is refused before anything is written.
-    given->placing_errors([&] { run::require_fit(given->config(), folder.dir(), processes); });
+    given->file.placing_errors([&] { run::require_fit(given->problem, folder.dir(), processes); });
   }
   if (processes.size() > 1 && given)
-    given->placing_errors([&] { run::require_divisible(given->config(), processes); });
+    given->file.placing_errors([&] { run::require_divisible(given->problem, processes); });
   catch_interrupts();
   try {
     const bool is_sequence =
-        input::is_sequence(options.restart ? run::unfinished_case(folder, nullptr) : given->config());
+        (options.restart ? run::unfinished_case(folder, nullptr) : given->problem).is_sequence();
     if (is_sequence) return run_sequence(options, folder, given);
     const auto [result, initial] = run_or_go_on(options, folder, given);
     run::require_came_to_end(result, folder);
     if (options.quiet) return;
     if (given)
-      for (const auto& note : given->notes()) print("note: {}\n", note);
+      for (const auto& note : given->file.notes()) print("note: {}\n", note);
     print_summary(result, initial, folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;

@@ -17,13 +17,14 @@ namespace {
 
 void validate(const CaseArguments& arguments, bool is_resolved) {
   const auto given = arguments.read();
-  const auto& config = given.config();
-  const auto rupture = given.placing_errors([&] { return run::rupture_outlook(config, run::check(config)); });
-  if (is_resolved) return print_output(input::to_toml(config));
+  const auto problem = problem::make_problem(given.config());
+  const auto rupture =
+      given.placing_errors([&] { return run::rupture_outlook(problem, run::check(problem)); });
+  if (is_resolved) return print_output(input::to_toml(given.config()));
   std::string text = fmt::format("{}: valid\n", arguments.file);
   auto notes = given.notes();
-  const double step_s = run::estimated_size(config).step_s;
-  for (auto& note : run::notes_of_case(config, rupture, step_s)) notes.push_back(std::move(note));
+  const double step_s = run::estimated_size(problem).step_s;
+  for (auto& note : run::notes_of_case(problem, rupture, step_s)) notes.push_back(std::move(note));
   for (const auto& note : notes) text += fmt::format("note: {}\n", note);
   print_output(text);
 }

@@ -9,12 +9,9 @@
 #include "boundary/machine.hpp"
 #include "fronts/front.hpp"
 #include "interface/interface.hpp"
-#include "interface/nucleation.hpp"
-#include "interface/trigger.hpp"
+#include "interface/start.hpp"
 #include "mesh/plate.hpp"
 #include "motion/settings.hpp"
-#include "record/energies.hpp"
-#include "record/probes.hpp"
 #include "record/record.hpp"
 #include "solid/material.hpp"
 #include "statics/settings.hpp"
@@ -64,7 +61,7 @@ struct Prestress {
 };
 
 /// A table of parameters of the friction law along the interface as it was read, see
-/// input/friction_along_x.hpp
+/// input/friction_table.hpp
 struct FrictionTable {
   std::string text;                         ///< of the file
   std::vector<double> x_m;                  ///< [rows]
@@ -90,6 +87,7 @@ struct FrictionAlongX {
   int random_seed = 1;
 
   bool varies() const { return !file.empty() || random_key != "none"; }
+  bool is_stepwise() const { return between_rows == BetweenRows::stepwise; }
 };
 
 /// What a run writes besides its fronts.
@@ -165,41 +163,9 @@ inline bool is_slow(const Case& config) {
   return is_sequence(config) && config.friction.has_state();
 }
 
-/// Whether mu_s of nodes at rest grows between its events.
-inline bool heals(const Case& config) {
-  return is_sequence(config) && config.sequence.healing_per_e_fold > 0;
-}
-
-/// Whether these grow during the event.
-inline bool has_growing_tractions(const Case& config) {
-  return is_prestressed(config) &&
-         (config.prestress.t_rate_Pa_per_s != 0 || config.prestress.p_rate_Pa_per_s != 0);
-}
-
-/// Whether the event starts by a traction added next to an edge of contact.
-inline bool is_pushed_at_edge(const Case& config) {
-  return interface::is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
-}
-/// Whether it starts by one added over a patch.
-inline bool is_overstressed(const Case& config) {
-  return config.event == interface::EventKind::nucleation &&
-         config.nucleation.form == interface::NucleationForm::overstress;
-}
-/// Whether it starts by weakening a patch.
-inline bool is_weakened_patch(const Case& config) {
-  return config.event == interface::EventKind::nucleation && !is_overstressed(config);
-}
-/// Whether that takes its time.
-inline bool is_forced(const Case& config) {
-  return is_weakened_patch(config) && config.nucleation.form == interface::NucleationForm::forced;
-}
-/// That as nucleation.form has it.
-inline const char* weakening_form(const Case& config) {
-  return is_forced(config) ? "forced" : "weakened";
-}
-/// Whether it starts by a force, with the trigger's ramp and duration.
-inline bool starts_by_force(const Case& config) {
-  return is_pushed_at_edge(config) || is_overstressed(config);
+/// How its event begins.
+inline interface::Start start_of(const Case& config) {
+  return {config.event, config.trigger, config.nucleation};
 }
 
 inline bool has_base_body(const Case& config) {
@@ -214,30 +180,6 @@ inline mesh::Plate base_plate(const Case& config) {
   plate.element_size_m = config.plate.element_size_m;
   plate.corner = mesh::Corner::none;
   return plate;
-}
-
-/// Whether there are neither coarser elements nor some that are wrapped around a corner: then a mesh can be
-/// made in rows, and in columns without the others.
-inline bool has_equal_elements(const Case& config) {
-  const auto are_equal = [](const mesh::Plate& plate) {
-    return plate.coarsenings == 0 && plate.corner != mesh::Corner::fillet;
-  };
-  return are_equal(config.plate) && (!has_base_body(config) || are_equal(base_plate(config)));
-}
-
-/// Whether processes that share a run may each have some columns of the bodies while none has all, so that
-/// these may have more nodes than can be numbered: nothing is strained before the event.
-inline bool can_be_held_in_parts(const Case& config) {
-  return is_prestressed(config) && has_equal_elements(config);
-}
-
-/// The probes of a case with their names.
-inline std::vector<record::ProbePlace> probe_places(const Case& config) {
-  const auto& [x_m, y_m, names, interval_s] = config.probes;
-  std::vector<record::ProbePlace> places;
-  for (std::size_t k = 0; k < x_m.size(); ++k)
-    places.push_back({names.empty() ? std::to_string(k + 1) : names[k], x_m[k], y_m[k]});
-  return places;
 }
 
 inline solid::Material base_material(const Case& config) {

@@ -295,11 +295,12 @@ Condition tapered() {
           }};
 }
 Condition forced() {
-  return {Message("{} = nucleation and {} = forced", Key("event.kind"), Key("nucleation.form")), is_forced};
+  return {Message("{} = nucleation and {} = forced", Key("event.kind"), Key("nucleation.form")),
+          [](const Case& c) { return start_of(c).is_forced(); }};
 }
 Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
-          is_overstressed};
+          [](const Case& c) { return start_of(c).overstresses(); }};
 }
 Condition direct() {
   return {Message("{} = direct", Key("loading.method")),
@@ -336,10 +337,11 @@ Condition at_edge() {
 Condition pushed() {
   return {
       Message("{} = left or right and {} = added or raised", Key("event.kind"), Key("event.trigger_form")),
-      is_pushed_at_edge};
+      [](const Case& c) { return start_of(c).pushes_edge(); }};
 }
 Condition started_by_force() {
-  return {Message("{}, or {}", pushed().setting, overstressed().setting), starts_by_force};
+  return {Message("{}, or {}", pushed().setting, overstressed().setting),
+          [](const Case& c) { return start_of(c).is_by_force(); }};
 }
 Condition with_table() {
   return {Message("{}", Key("friction.file")),

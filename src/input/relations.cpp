@@ -48,7 +48,8 @@ void check_state(const Case& config) {
     refuse(Key("contact.algorithm"), "predictor_corrector", "direct");
   if (config.loading.method == statics::LoadingMethod::ramp)
     refuse(Key("loading.method"), "ramp", "direct or prestress");
-  if (is_weakened_patch(config)) refuse(Key("nucleation.form"), weakening_form(config), "overstress");
+  if (const auto start = start_of(config); start.weakens_patch())
+    refuse(Key("nucleation.form"), start.weakening_form(), "overstress");
   if (interface::is_at_edge(config.event) && config.trigger.form == interface::TriggerForm::weakened)
     refuse(Key("event.trigger_form"), "weakened", "added or raised");
   if (config.regularisation.relaxed == interface::Relaxed::strength)
@@ -82,6 +83,12 @@ void check_initial_state(const Case& config) {
   if (std::abs(V_i - follows) > rounding * follows)
     throw UserError("{} and {} give {} = {:.6g} m/s, not {:.6g} m/s; leave one of the three out", theta, t, V,
                     follows, V_i);
+}
+
+/// Whether ranks may each have some columns of the bodies while none has all.
+bool can_be_held_in_parts(const Case& config) {
+  return is_prestressed(config) && mesh::has_equal_elements(config.plate) &&
+         (!has_base_body(config) || mesh::has_equal_elements(base_plate(config)));
 }
 
 /// How many nodes processes can number that have some of them each follows when they are known.
@@ -244,11 +251,11 @@ void check_nucleation(const Case& config) {
     throw UserError("{} is {:.12g} m; with {} = periodic it must be at most half of {}, {:.12g} m",
                     is_smooth ? Message("{}", half_length) : Message("{} + {:leaf}", half_length, taper),
                     reach_m, Key("plate.sides"), width, 0.5 * width_m);
-  if (is_weakened_patch(config) && never_weakens(config))
+  if (start_of(config).weakens_patch() && never_weakens(config))
     throw UserError(
         "{} = {} does nothing where the friction law does not weaken, mu_k at least mu_s; choose "
         "overstress",
-        Key("nucleation.form"), weakening_form(config))
+        Key("nucleation.form"), start_of(config).weakening_form())
         .about("event.kind", "friction.law");
 }
 

@@ -19,7 +19,7 @@
 #include "input/default_rules.hpp"
 #include "input/document.hpp"
 #include "input/entries.hpp"
-#include "input/friction_along_x.hpp"
+#include "input/friction_table.hpp"
 #include "input/prestress.hpp"
 #include "input/relations.hpp"
 

@@ -28,6 +28,12 @@ std::vector<bool> orphans(const Mesh& mesh) {
   return orphan;
 }
 
+std::vector<double> interface_x_m(const Mesh& mesh) {
+  std::vector<double> x_m;
+  for (const auto n : mesh.interface_nodes) x_m.push_back(mesh.x_m[n]);
+  return x_m;
+}
+
 std::vector<double> tributary_lengths_m(const Mesh& mesh) {
   std::vector<double> length_m(mesh.interface_nodes.size(), 0.0);
   for (std::size_t i = 0; i + 1 < mesh.interface_nodes.size(); ++i) {

@@ -80,6 +80,9 @@ std::vector<bool> orphans(const Mesh& mesh);
 /// the plate is periodic.
 double distance_x_m(const Mesh& mesh, Node from, Node to);
 
+/// Positions of the nodes of `mesh.interface_nodes`.
+std::vector<double> interface_x_m(const Mesh& mesh);
+
 /// Length of lower boundary that belongs to each node of `mesh.interface_nodes`: half of each adjoining
 /// segment, measured along the arcs' chords. The first and the last node have one segment only, unless the
 /// plate is periodic. [interface nodes], m.

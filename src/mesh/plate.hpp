@@ -45,6 +45,11 @@ struct Plate {
   Top top = Top::loaded;
 };
 
+/// Whether elements are neither coarser anywhere nor wrapped around a corner.
+inline bool has_equal_elements(const Plate& plate) {
+  return plate.coarsenings == 0 && plate.corner != Corner::fillet;
+}
+
 /// Meshes the plate with four-node cells that are squares away from the corners, exact to rounding when the
 /// sides are exact multiples.
 ///

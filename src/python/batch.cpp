@@ -112,15 +112,15 @@ BatchEvent event_of_history(const input::CaseFile& given, const Values& time_s, 
                             const Rows& slip_rate_m_per_s, const Rows& t_Pa, const Rows& p_Pa,
                             const Values& t_s_Pa, const Values& p_s_Pa, double threshold_m_per_s,
                             double critical_shear_m) {
-  const auto& config = given.config();
+  const auto problem = problem::make_problem(given.config());
   const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
   run::InitialState initial;
   initial.subcritical.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
   initial.critical_shear_m = critical_shear_m;
-  find_contact(initial.subcritical.tractions, config.loading.edge_margin_m, initial);
+  find_contact(initial.subcritical.tractions, problem.loading.edge_margin_m, initial);
   run::Result result;
-  result.speeds = run::wave_speeds(config.material);
-  const auto options = run::front_options(config, initial);
+  result.speeds = run::wave_speeds(problem.above().material);
+  const auto options = run::front_options(problem, initial);
   result.event.record = to_record(history, threshold_m_per_s, options.l_star_m);
   result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
   return event_of(result, initial);
@@ -155,21 +155,21 @@ class Batch {
   void run(const std::vector<const input::CaseFile*>& cases,
            const std::vector<std::optional<fs::path>>& folders, const nb::callable& done) {
     require(folders.size() == cases.size(), "a folder, or None, for each case");
-    std::vector<input::Case> configs;
-    for (const auto* given : cases) configs.push_back(given->config());
+    std::vector<Problem> problems;
+    for (const auto* given : cases) problems.push_back(problem::make_problem(given->config()));
     Watcher watcher{nb::none()};
     watcher_ = &watcher;
     const nb::gil_scoped_release unlocked;
     try {
       batch_.run(
-          configs,
+          problems,
           [&](std::size_t k, const run::Result& result, const run::InitialState& initial, bool was_kept) {
             if (folders[k] && !was_kept) write_run(*folders[k], result, initial);
             auto event = event_of(result, initial);
             watcher.in_python([&] { done(k, std::move(event)); });
           },
           [&](std::size_t k) {  // snapshots are not kept
-            return configs[k].output.snapshot_times_s.empty() && (!folders[k] || is_written(*folders[k]));
+            return problems[k].output.snapshot_times_s.empty() && (!folders[k] || is_written(*folders[k]));
           });
       watcher.rethrow();
     } catch (const Interrupted&) {

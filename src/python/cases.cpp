@@ -19,12 +19,12 @@
 #include "base/numbers.hpp"
 #include "input/schema.hpp"
 #include "interface/friction.hpp"
+#include "problem/source.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/observers.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
-#include "run/choices.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
 #include "run/sequence_session.hpp"
@@ -99,18 +99,18 @@ struct Session {
 
 void show_no_event(std::size_t /*number*/, const record::SequenceEvent& /*event*/) {}
 
-/// @param config  the case that was given, or that with another friction law
-void run_config(const input::CaseFile& given, const input::Case& config, const fs::path& dir, bool overwrite,
-                std::optional<int> threads, double checkpoint_every_s, nb::object progress,
-                const Functions& observers = {}, const results::ResultFolder* within = nullptr) {
+/// @param problem  of the case that was given, or with another friction law
+void run_problem(const input::CaseFile& given, const Problem& problem, const fs::path& dir, bool overwrite,
+                 std::optional<int> threads, double checkpoint_every_s, nb::object progress,
+                 const Functions& observers = {}, const results::ResultFolder* within = nullptr) {
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers, within);
   session.folder.require_empty(overwrite);
   session.complete([&] {
     return given.placing_errors([&]() -> std::optional<run::Finished> {
-      run::require_fit(config, session.folder.dir());
+      run::require_fit(problem, session.folder.dir());
       const auto hooks = session.watcher.hooks();
-      if (!input::is_sequence(config)) return run::run_into(session.folder, config, session.options, hooks);
-      run::run_sequence_into(session.folder, config, session.options, hooks, show_no_event);
+      if (!problem.is_sequence()) return run::run_into(session.folder, problem, session.options, hooks);
+      run::run_sequence_into(session.folder, problem, session.options, hooks, show_no_event);
       return {};
     });
   });
@@ -119,8 +119,8 @@ void run_config(const input::CaseFile& given, const input::Case& config, const f
 void run_case(const input::CaseFile& given, const fs::path& dir, bool overwrite, std::optional<int> threads,
               double checkpoint_every_s, nb::object progress, const Functions& observers,
               const results::ResultFolder* within) {
-  run_config(given, given.config(), dir, overwrite, threads, checkpoint_every_s, std::move(progress),
-             observers, within);
+  run_problem(given, problem::make_problem(given.config()), dir, overwrite, threads, checkpoint_every_s,
+              std::move(progress), observers, within);
 }
 
 /// An array of Python's own: who is called may keep it.
@@ -168,22 +168,22 @@ interface::ArrayLaw law_of(const nb::callable& mu_of) {
 /// The event by a law in Python. One thread: all of them would wait for Python's lock.
 void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::callable& mu_of,
                 const std::optional<nb::callable>& evolve, nb::object progress) {
-  input::Case config = given.config();
+  Problem problem = problem::make_problem(given.config());
   const Key law("friction.law");
-  if (input::is_sequence(config))
+  if (problem.is_sequence())
     throw UserError("{} is {}; a law in Python is of one event: set it to 1", Key("sequence.max_events"),
-                    config.sequence.max_events);
-  if (evolve && !config.friction.has_state())
+                    problem.sequence.max_events);
+  if (evolve && !problem.friction.law.has_state())
     throw UserError("evolve: {} = {} has no state variable; choose rate_and_state_*", law,
-                    config.friction.name());
-  if (!evolve && config.friction.has_state())
+                    problem.friction.law.name());
+  if (!evolve && problem.friction.law.has_state())
     throw UserError("{} = {} has a state, which mu alone does not change; give evolve", law,
-                    config.friction.name());
+                    problem.friction.law.name());
   if (evolve)
-    config.friction.set_function(law_of(mu_of, *evolve));
+    problem.friction.law.set_function(law_of(mu_of, *evolve));
   else
-    config.friction.set_function(law_of(mu_of));
-  run_config(given, config, dir, false, 1, infinity, std::move(progress));
+    problem.friction.law.set_function(law_of(mu_of));
+  run_problem(given, problem, dir, false, 1, infinity, std::move(progress));
 }
 
 void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress,
@@ -192,7 +192,7 @@ void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_e
   if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
   session.complete([&]() -> std::optional<run::Finished> {
     const auto hooks = session.watcher.hooks();
-    if (!input::is_sequence(run::unfinished_case(session.folder, nullptr)))
+    if (!run::unfinished_case(session.folder, nullptr).is_sequence())
       return run::resume(session.folder, nullptr, session.options, hooks);
     run::resume_sequence(session.folder, nullptr, session.options, hooks, show_no_event);
     return {};
@@ -202,8 +202,8 @@ void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_e
 stability::WellPosedness well_posedness(const input::CaseFile& given, double pressure_Pa,
                                         double element_size_m, double longest_wavelength_m) {
   const auto& config = given.config();
-  return stability::well_posedness(run::bodies_of(config), config.friction, pressure_Pa, element_size_m,
-                                   longest_wavelength_m, config.regularisation);
+  return stability::well_posedness(materials_of(problem::make_problem(config)), config.friction, pressure_Pa,
+                                   element_size_m, longest_wavelength_m, config.regularisation);
 }
 
 /// Stable step of the case's material in squares, without its geometry.
@@ -349,14 +349,17 @@ void bind_cases(nb::module_& module) {
           "text"_a, "name"_a, "folder"_a, "changes"_a,
           "Of a text, which `name` stands for in messages; paths of its tables count from `folder`.")
       .def_prop_ro(
-          "toml", [](const C& c) { return run::resolved_text(c.config()); },
+          "toml", [](const C& c) { return problem::source_of(c.config()).case_text; },
           "every key with its value, as case.resolved.toml has it")
       .def_prop_ro(
           "wave_speeds", [](const C& c) { return run::wave_speeds(c.config().material); }, "of the plate")
       .def_prop_ro("static_coefficient",
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
       .def(
-          "info", [](const C& c) { return c.placing_errors([&] { return run::info(c.config()); }); },
+          "info",
+          [](const C& c) {
+            return c.placing_errors([&] { return run::info(problem::make_problem(c.config())); });
+          },
           nb::call_guard<nb::gil_scoped_release>(),
           "What follows from the case; only loads that are forces take its statics.")
       .def("stable_step_s", &stable_step_s, "element_size_m"_a,
@@ -370,7 +373,8 @@ void bind_cases(nb::module_& module) {
            "observers with an InterfaceState at its interval, s. within: the ResultFolder of whose work the "
            "folder is a part.")
       .def(
-          "check", [](const C& c) { c.placing_errors([&] { return run::check(c.config()); }); },
+          "check",
+          [](const C& c) { c.placing_errors([&] { return run::check(problem::make_problem(c.config())); }); },
           "What can be checked without solving anything: memory, geometry; raises CaseError.");
   module.def(
       "run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "evolve"_a.none(), "progress"_a.none(),

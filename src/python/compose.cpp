@@ -14,16 +14,15 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
 #include "mesh/plate.hpp"
 #include "motion/observed_run.hpp"
 #include "motion/observers/blow_up_monitor.hpp"
 #include "motion/stepper.hpp"
+#include "problem/contact.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/watcher.hpp"
-#include "run/choices.hpp"
 #include "run/loads.hpp"
 #include "statics/prestress.hpp"
 #include "statics/statics.hpp"
@@ -109,12 +108,12 @@ class Stepper {
  public:
   Stepper(const Body& above, const Friction& friction, const Body* below, int threads, const nb::kwargs& time)
       : keys_(with_table(joined(above.keys, friction.keys), "time", time)),
-        config_(input::parse_tables(keys_)),
+        problem_(problem::make_problem(input::parse_tables(keys_))),
         above_(above),
         below_(below),
-        x_m_(run::interface_x_m(above.mesh)),
-        contact_(input::contact_model(config_, x_m_)),
-        stepper_(sources(threads), contact_, config_.time, {.threads = threads}) {}
+        x_m_(mesh::interface_x_m(above.mesh)),
+        contact_(contact_model(problem_, x_m_)),
+        stepper_(sources(threads), contact_, problem_.time, {.threads = threads}) {}
 
   void start(const nb::object& t_Pa, const nb::object& p_Pa, const nb::object& strength_fraction,
              double shear_speed_m_per_s) {
@@ -137,8 +136,9 @@ class Stepper {
     // Of the case only the loading counts.
     const auto keys =
         with_table(joined(keys_, {{"event.kind", "none"}, {"base.kind", "rigid"}}), "loading", loading);
-    const auto config = input::CaseFile(input::CaseText{"", "case", {}}, keys).config();
-    if (config.loading.method != statics::LoadingMethod::direct)
+    const auto problem =
+        problem::make_problem(input::CaseFile(input::CaseText{"", "case", {}}, keys).config());
+    if (problem.loading.method != statics::LoadingMethod::direct)
       throw UserError("{} must be direct here; remove it", Key("loading.method"));
     for (const Body* body : {&above_, below_})
       if (body && (body->mesh.far_edge_nodes.empty() || body->mesh.period_m > 0))
@@ -148,13 +148,13 @@ class Stepper {
     Watcher watcher{nb::none()};
     const auto equilibrium = [&] {
       const nb::gil_scoped_release unlocked;
-      const statics::Statics statics({above_.mesh, above_.material}, base, config.loading, mu_s(),
-                                     interface::static_coefficient_key(config.friction),
+      const statics::Statics statics({above_.mesh, above_.material}, base, problem.loading, mu_s(),
+                                     interface::static_coefficient_key(problem.friction.law),
                                      [&] { return !watcher.is_stopped(); });
       if (share) return statics.shear_to(*share);
-      return run::common_state(config, statics, statics.shear_to(1), mesh::tributary_lengths_m(above_.mesh));
+      return run::common_state(problem, statics, statics.shear_to(1), mesh::tributary_lengths_m(above_.mesh));
     }();
-    begin(equilibrium, run::top_speed_m_per_s(config), {});
+    begin(equilibrium, problem.shear_speed_m_per_s, {});
   }
 
   void set_tractions(const nb::object& t_Pa, const nb::object& p_Pa) {
@@ -206,13 +206,13 @@ class Stepper {
       if (std::ranges::find(keys_, key, &input::Override::first) != keys_.end())
         throw UserError("{} does nothing here: a stepper goes as far as it is told; remove it", Key(key));
     const Key tip("friction.tip_slip_rate_m_per_s");
-    if (config_.friction.has_state() && !config_.tip_slip_rate_m_per_s)
+    if (problem_.friction.law.has_state() && !problem_.friction.tip_slip_rate_m_per_s)
       throw UserError("{} has no default here, where the pressure is not known yet; set it", tip);
     if (threads < 1) throw UserError("threads is {}; it must be at least 1", threads);
     std::vector<motion::BodySource> bodies = {{above_.mesh, above_.material}};
     if (!below_) return bodies;
     bodies.push_back({below_->mesh, below_->material});
-    const auto x_below_m = run::interface_x_m(below_->mesh);
+    const auto x_below_m = mesh::interface_x_m(below_->mesh);
     const double least_m = 1e-6 * mesh::min_side_m(above_.mesh);
     const auto faces = [&](double a, double b) { return std::abs(a - b) < least_m; };
     if (above_.mesh.period_m != below_->mesh.period_m || !std::ranges::equal(x_m_, x_below_m, faces) ||
@@ -266,7 +266,7 @@ class Stepper {
     double fastest = solid::longitudinal_speed_m_per_s(above_.material);
     if (below_) fastest = std::max(fastest, solid::longitudinal_speed_m_per_s(below_->material));
     motion::Observers observers;
-    observers.push_back(std::make_unique<motion::BlowUpMonitor>(stepper_, fastest, config_.time.precision,
+    observers.push_back(std::make_unique<motion::BlowUpMonitor>(stepper_, fastest, problem_.time.precision,
                                                                 energies_at_start_));
     auto until = std::make_unique<Until>();
     until_ = until.get();
@@ -278,7 +278,7 @@ class Stepper {
   }
 
   Keys keys_;
-  input::Case config_;
+  Problem problem_;
   const Body& above_;
   const Body* below_;  ///< null on the rigid plane
   std::vector<double> x_m_;

@@ -25,6 +25,7 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
                         const std::optional<std::tuple<Values, Values, Values>>& before) {
   const run::TipFriction friction{to_vector(x_m), to_vector(fracture_energy),
                                   to_vector(residual_coefficient)};
+  const auto problem = problem::make_problem(given.config());
   std::optional<record::StaticState> state;
   if (before) {
     const auto& [places, t_Pa, p_Pa] = *before;
@@ -32,9 +33,8 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   }
   const auto p = [&] {
     const nb::gil_scoped_release unlocked;
-    return given.placing_errors([&] {
-      return run::FrontPredictor(given.config()).predict(friction, at_x_m, state ? &*state : nullptr);
-    });
+    return given.placing_errors(
+        [&] { return run::FrontPredictor(problem).predict(friction, at_x_m, state ? &*state : nullptr); });
   }();
   const auto& of = p.of_fronts;
   nb::dict points;
@@ -59,7 +59,7 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   found["nucleation_length_m"] = p.nucleation_length_m;
   found["bodies"] = p.bodies;
   found["notes"] = p.notes;
-  found["law_has_length"] = run::has_fracture_energy(given.config());
+  found["law_has_length"] = run::has_fracture_energy(problem);
   found["doubts_of_arrest"] = p.doubts_of_arrest;
   return found;
 }

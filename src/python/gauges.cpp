@@ -7,9 +7,9 @@
 
 #include "fracture/field.hpp"
 #include "input/schema.hpp"
+#include "problem/problem.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
-#include "run/choices.hpp"
 
 namespace slipfront::python {
 namespace {
@@ -24,7 +24,9 @@ struct Field {
   fracture::TipField field;
 
   Field(const input::CaseFile& given, double speed, int along_x)
-      : bodies(run::bodies_of(given.config())), speed_m_per_s(speed), field(bodies, speed, along_x) {
+      : bodies(materials_of(problem::make_problem(given.config()))),
+        speed_m_per_s(speed),
+        field(bodies, speed, along_x) {
     require(along_x == 1 || along_x == -1, "along_x must be 1 or -1");
   }
 };

@@ -52,9 +52,9 @@ Batch::Batch(int threads, std::function<bool()> may_continue, std::string interr
   if (!kept.empty()) kept_.emplace(kept);
 }
 
-void Batch::run(std::span<const input::Case> cases, const Done& done, const Usable& usable) {
+void Batch::run(std::span<const Problem> cases, const Done& done, const Usable& usable) {
   std::vector<std::size_t> missing;
-  std::vector<const input::Case*> missing_cases;
+  std::vector<const Problem*> missing_cases;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     Result result;
     InitialState initial;
@@ -69,7 +69,7 @@ void Batch::run(std::span<const input::Case> cases, const Done& done, const Usab
   compute_initial_states(missing_cases);
   in_parallel(threads_, missing.size(), [&](std::size_t m) {
     const std::size_t k = missing[m];
-    const auto& initial = states_.at(initial_state_key(cases[k]));
+    const auto& initial = states_.at(cases[k].source.state_key);
     const auto result = run_from(cases[k], initial, monitor());
     if (result.event.end == motion::EventEnd::interrupted) throw Interrupted(interruption_);
     done(k, result, initial, false);
@@ -82,13 +82,13 @@ void Batch::run(std::span<const input::Case> cases, const Done& done, const Usab
   });
 }
 
-void Batch::compute_initial_states(std::span<const input::Case* const> cases) {
-  std::vector<std::pair<std::string, const input::Case*>> missing;
-  for (const auto* config : cases) {
-    auto key = initial_state_key(*config);
+void Batch::compute_initial_states(std::span<const Problem* const> cases) {
+  std::vector<std::pair<std::string, const Problem*>> missing;
+  for (const auto* problem : cases) {
+    auto key = problem->source.state_key;
     if (states_.contains(key)) continue;
     states_[key] = {};
-    missing.emplace_back(std::move(key), config);
+    missing.emplace_back(std::move(key), problem);
   }
   in_parallel(threads_, missing.size(), [&](std::size_t k) {
     try {

@@ -43,13 +43,13 @@ class Batch {
   /// Runs all cases, in their order where there are more than threads, but for those that were kept. Initial
   /// states are kept for later calls.
   /// @throws Interrupted, and what a run or `done` throws first.
-  void run(std::span<const input::Case> cases, const Done& done, const Usable& usable = {});
+  void run(std::span<const Problem> cases, const Done& done, const Usable& usable = {});
 
   /// Counts of all calls.
   const Counts& counts() const { return counts_; }
 
  private:
-  void compute_initial_states(std::span<const input::Case* const> cases);
+  void compute_initial_states(std::span<const Problem* const> cases);
   bool wanted();
   motion::Monitor monitor();
 

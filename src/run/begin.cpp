@@ -7,11 +7,10 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
-#include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
 #include "motion/quasi_dynamic.hpp"
 #include "motion/trigger_zone.hpp"
-#include "run/choices.hpp"
+#include "problem/contact.hpp"
 
 namespace slipfront::run {
 
@@ -28,10 +27,10 @@ std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::M
 }
 
 /// Why a trigger at an edge adds nothing, and which amount does.
-Message idle_trigger(const input::Case& config, const statics::Equilibrium& state, const PerNode& mu_s,
+Message idle_trigger(const Problem& problem, const statics::Equilibrium& state, const PerNode& mu_s,
                      std::span<const double> tributary_m) {
-  const auto& trigger = config.trigger;
-  const auto zone = motion::trigger_zone(state, config.event, trigger.zone_m);
+  const auto& trigger = problem.start.trigger;
+  const auto zone = motion::trigger_zone(state, problem.start.kind, trigger.zone_m);
   const double direction = motion::load_direction(state, tributary_m, zone);
   double least = infinity;
   for (const auto k : zone)
@@ -48,44 +47,45 @@ Message idle_trigger(const input::Case& config, const statics::Equilibrium& stat
 
 /// Forces of a trigger at an edge, none for other events.
 /// @throws UserError  where the trigger adds nothing
-std::vector<double> trigger_forces(const input::Case& config, const statics::Equilibrium& state,
+std::vector<double> trigger_forces(const Problem& problem, const statics::Equilibrium& state,
                                    const PerNode& mu_s, std::span<const double> tributary_m) {
-  auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger, mu_s);
-  if (input::is_pushed_at_edge(config) &&
-      std::ranges::all_of(forces, [](double force) { return force == 0; }))
-    throw UserError(idle_trigger(config, state, mu_s, tributary_m)).about("event.trigger_form");
+  auto forces = motion::trigger_forces(state, tributary_m, problem.start.kind, problem.start.trigger, mu_s);
+  if (problem.start.pushes_edge() && std::ranges::all_of(forces, [](double force) { return force == 0; }))
+    throw UserError(idle_trigger(problem, state, mu_s, tributary_m)).about("event.trigger_form");
   return forces;
 }
 
 /// Forces of the trigger, and of a patch that is overstressed. [interface nodes]
-std::vector<double> starting_forces_N_per_m(const input::Case& config, const statics::Equilibrium& state,
+std::vector<double> starting_forces_N_per_m(const Problem& problem, const statics::Equilibrium& state,
                                             const PerNode& mu_s, const mesh::Mesh& mesh,
                                             std::span<const double> tributary_m) {
-  auto forces = trigger_forces(config, state, mu_s, tributary_m);
-  if (!input::is_overstressed(config)) return forces;
-  const auto B = patch(config.nucleation, mesh);
+  auto forces = trigger_forces(problem, state, mu_s, tributary_m);
+  if (!problem.start.overstresses()) return forces;
+  const auto B = patch(problem.start.nucleation, mesh);
   for (std::size_t k = 0; k < B.size(); ++k)
     if (state.contact[k] != statics::Contact::open)
-      forces[k] = config.nucleation.overstress_Pa * B[k] * tributary_m[k];
+      forces[k] = problem.start.nucleation.overstress_Pa * B[k] * tributary_m[k];
   return forces;
 }
 
 /// Interface::strength_fraction of an event that begins with a weakened patch or zone; empty for others.
-std::vector<double> intact_shares(const input::Case& config, const statics::Equilibrium& state,
+std::vector<double> intact_shares(const Problem& problem, const statics::Equilibrium& state,
                                   const mesh::Mesh& mesh) {
-  if (input::is_weakened_patch(config)) {
-    auto shares = patch(config.nucleation, mesh);
+  if (problem.start.weakens_patch()) {
+    auto shares = patch(problem.start.nucleation, mesh);
     for (double& share : shares) share = 1 - share;
     return shares;
   }
-  if (!is_at_edge(config.event) || config.trigger.form != interface::TriggerForm::weakened) return {};
+  if (!is_at_edge(problem.start.kind) || problem.start.trigger.form != interface::TriggerForm::weakened)
+    return {};
   std::vector<double> shares(mesh.interface_nodes.size(), 1.0);
-  for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) shares[k] = 0;
+  for (const auto k : motion::trigger_zone(state, problem.start.kind, problem.start.trigger.zone_m))
+    shares[k] = 0;
   return shares;
 }
 
 /// Refuses an event that begins with weakening at nodes whose friction does not weaken.
-void require_weakening(const input::Case& config, const std::vector<double>& strength_fraction,
+void require_weakening(const Problem& problem, const std::vector<double>& strength_fraction,
                        const std::vector<interface::FrictionLaw>& laws) {
   if (strength_fraction.empty() || laws.empty()) return;
   for (std::size_t i = 0; i < laws.size(); ++i)
@@ -93,62 +93,61 @@ void require_weakening(const input::Case& config, const std::vector<double>& str
         interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
       return;
   throw UserError("{} = {} does nothing where friction does not weaken at any node; choose another form",
-                  Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"),
-                  weakening_form(config))
+                  Key(is_at_edge(problem.start.kind) ? "event.trigger_form" : "nucleation.form"),
+                  problem.start.weakening_form())
       .about("event.kind");
 }
 
 }  // namespace
 
-PerNode ratios_at_rest(const input::Case& config, const std::vector<double>& of_nodes) {
-  return of_nodes.empty() ? PerNode(interface::static_coefficient(config.friction)) : PerNode(of_nodes);
+PerNode ratios_at_rest(const Problem& problem, const std::vector<double>& of_nodes) {
+  return of_nodes.empty() ? PerNode(interface::static_coefficient(problem.friction.law)) : PerNode(of_nodes);
 }
 
-std::vector<double> ratios_at_rest(const input::Case& config, const mesh::Mesh& mesh) {
-  auto laws = input::friction_at(config, interface_x_m(mesh));
-  if (laws.empty() && config.friction.cohesion_Pa() == 0) return {};
-  laws.resize(mesh.interface_nodes.size(), config.friction);
+std::vector<double> ratios_at_rest(const Problem& problem, const mesh::Mesh& mesh) {
+  auto laws = friction_at(problem, mesh::interface_x_m(mesh));
+  if (laws.empty() && problem.friction.law.cohesion_Pa() == 0) return {};
+  laws.resize(mesh.interface_nodes.size(), problem.friction.law);
   const bool is_cohesive = std::ranges::any_of(laws, [](const auto& law) { return law.cohesion_Pa() > 0; });
   std::vector<double> ratios;
   for (const auto& law : laws) ratios.push_back(interface::static_coefficient(law));
   if (!is_cohesive) return ratios;
-  const auto s = prescribed_tractions(config, mesh);
+  const auto s = prescribed_tractions(problem, mesh::interface_x_m(mesh));
   for (std::size_t k = 0; k < laws.size(); ++k)
     ratios[k] = interface::static_strength_Pa(laws[k], s.p_s_Pa[k]) / s.p_s_Pa[k];
   return ratios;
 }
 
-double loads_settle_s(const input::Case& config) {
-  if (has_growing_tractions(config)) return infinity;
-  if (starts_by_force(config)) return motion::last_change_s(config.trigger);
-  if (!is_forced(config)) return 0;
-  const auto& n = config.nucleation;
+double loads_settle_s(const Problem& problem) {
+  if (problem.has_growing_tractions()) return infinity;
+  if (problem.start.is_by_force()) return motion::last_change_s(problem.start.trigger);
+  if (!problem.start.is_forced()) return 0;
+  const auto& n = problem.start.nucleation;
   return n.reach_m() / n.front_speed_m_per_s + n.weakening_time_s;
 }
 
-motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state,
+motion::Loads starting_loads(const Problem& problem, const statics::Equilibrium& state,
                              const mesh::Mesh& mesh, const std::vector<double>& of_nodes) {
   motion::Loads loads;
-  if (is_prestressed(config)) {
+  if (problem.is_prestressed()) {
     loads.prestress_t_Pa = state.tractions.t_s_Pa;
     loads.prestress_p_Pa = state.tractions.p_s_Pa;
-    loads.prestress_rate = {config.prestress.t_rate_Pa_per_s, config.prestress.p_rate_Pa_per_s};
+    loads.prestress_rate = {problem.prestress->t_rate_Pa_per_s, problem.prestress->p_rate_Pa_per_s};
   }
   const auto tributary_m = mesh::tributary_lengths_m(mesh);
-  if (input::is_sequence(config))
-    loads.light_Pa = motion::light_pressure_Pa(state.tractions.p_s_Pa, tributary_m);
-  loads.trigger = config.trigger;
+  if (problem.is_sequence()) loads.light_Pa = motion::light_pressure_Pa(state.tractions.p_s_Pa, tributary_m);
+  loads.trigger = problem.start.trigger;
   loads.trigger_force_N_per_m =
-      starting_forces_N_per_m(config, state, ratios_at_rest(config, of_nodes), mesh, tributary_m);
-  loads.strength_fraction = intact_shares(config, state, mesh);
-  if (is_forced(config)) {
+      starting_forces_N_per_m(problem, state, ratios_at_rest(problem, of_nodes), mesh, tributary_m);
+  loads.strength_fraction = intact_shares(problem, state, mesh);
+  if (problem.start.is_forced()) {
     for (const auto n : mesh.interface_nodes)
-      loads.weakens_at_s.push_back(from_centre_m(config.nucleation, mesh.x_m[n], mesh.period_m) /
-                                   config.nucleation.front_speed_m_per_s);
-    loads.weakening_time_s = config.nucleation.weakening_time_s;
+      loads.weakens_at_s.push_back(from_centre_m(problem.start.nucleation, mesh.x_m[n], mesh.period_m) /
+                                   problem.start.nucleation.front_speed_m_per_s);
+    loads.weakening_time_s = problem.start.nucleation.weakening_time_s;
   }
   if (!loads.strength_fraction.empty())
-    require_weakening(config, loads.strength_fraction, input::friction_at(config, interface_x_m(mesh)));
+    require_weakening(problem, loads.strength_fraction, friction_at(problem, mesh::interface_x_m(mesh)));
   return loads;
 }
 

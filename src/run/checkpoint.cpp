@@ -14,7 +14,6 @@
 #include "base/state.hpp"
 #include "base/version.hpp"
 #include "run/begin.hpp"
-#include "run/choices.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -70,21 +69,21 @@ const std::string& program_identity() {
   return identity;
 }
 
-InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
+InitialState read_initial_state(results::InputArchive& archive, const Problem& problem,
                                 const Processes& processes) {
   InitialState initial;
-  auto meshes = check(config, processes);
+  auto meshes = check(problem, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   archive(initial);
-  const auto x_m = interface_x_m(initial.mesh);
+  const auto x_m = mesh::interface_x_m(initial.mesh);
   const auto n_nodes = [](const mesh::Mesh& mesh) { return static_cast<std::size_t>(mesh.n_nodes()); };
   const auto is_possible = [&](const auto& states) {
     const auto n_below = initial.base ? n_nodes(*initial.base) : 0;
     return statics::is_possible(states.subcritical, x_m, n_nodes(initial.mesh), n_below) &&
            statics::is_possible(states.supercritical, x_m, n_nodes(initial.mesh), n_below);
   };
-  const bool by_ramp = config.loading.method == statics::LoadingMethod::ramp;
+  const bool by_ramp = problem.loading.method == statics::LoadingMethod::ramp;
   const auto count = [&](auto&& count_of) {
     return count_of(initial.mesh) + (initial.base ? count_of(*initial.base) : 0);
   };
@@ -92,13 +91,14 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
                        initial.tributary_m == mesh::tributary_lengths_m(initial.mesh) &&
                        initial.mu_s == meshes.mu_s,
                    "a plate");
-  require_possible(is_possible(initial) && initial.prescribed == is_prestressed(config) &&
+  require_possible(is_possible(initial) && initial.prescribed == problem.is_prestressed() &&
                        initial.ramp.has_value() == by_ramp &&
                        initial.solver <= statics::StaticSolver::iterative &&
                        (initial.prescribed || std::isfinite(initial.critical_shear_m)),
                    "an initial state");
-  require_possible(initial.law_states.empty() || initial.law_states.size() == config.friction.states().size(),
-                   "states of friction");
+  require_possible(
+      initial.law_states.empty() || initial.law_states.size() == problem.friction.law.states().size(),
+      "states of friction");
   for (const auto& values : initial.law_states)
     require_possible(values.size() == x_m.size() &&
                          std::ranges::all_of(values, [](double value) { return std::isfinite(value); }),

@@ -18,22 +18,21 @@ const std::string& program_identity();
 /// What a checkpoint says of itself before all else.
 struct CheckpointHead {
   std::string program = program_identity();
-  std::string case_text;                        ///< case.resolved.toml
-  std::string prestress_table, friction_table;  ///< as they were read; empty without
-  bool in_event = false;                        ///< else in the ramp
-  int sessions = 1;                             ///< see Status
-  double wall_s = 0;                            ///< spent in the event so far
+  problem::Source source;
+  bool in_event = false;  ///< else in the ramp
+  int sessions = 1;       ///< see Status
+  double wall_s = 0;      ///< spent in the event so far
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(program, case_text, prestress_table, friction_table, in_event, sessions, wall_s);
+    archive(program, source, in_event, sessions, wall_s);
   }
 };
 
 /// Reads what was kept of a case's initial state, and makes its mesh.
 /// @param processes  the ranks that share the run
 /// @throws UserError where it is of another plate
-InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
+InitialState read_initial_state(results::InputArchive& archive, const Problem& problem,
                                 const Processes& processes = one_process());
 
 /// The motion of a ramp or an event, see TimeStepper::keep.

@@ -61,12 +61,12 @@ bool answers_sign(const Order& order, int rank) {
   return true;
 }
 
-void write(const Order& order, const input::Case& config, const std::function<SnapshotMesh()>& make_mesh,
+void write(const Order& order, const Problem& problem, const std::function<SnapshotMesh()>& make_mesh,
            results::Writer writer) {
   std::optional<SnapshotMesh> mesh;
   writer.together([&] { mesh = make_mesh(); });
   writer.count = std::min(writer.count, static_cast<int>(mesh->slabs.n_slabs));
-  results::finish_snapshots(order.file, mesh->slabs, snapshot_contents(config, *mesh), writer);
+  results::finish_snapshots(order.file, mesh->slabs, snapshot_contents(problem, *mesh), writer);
 }
 
 /// Whether all ranks see the files of rank 0, and it sees theirs.
@@ -88,9 +88,9 @@ Order order_of(const results::ResultFolder& folder) {
 
 }  // namespace
 
-void write_fields(const results::ResultFolder* folder, const input::Case& config, Processes& processes,
+void write_fields(const results::ResultFolder* folder, const Problem& problem, Processes& processes,
                   const std::function<void(const std::string&)>& note) {
-  const bool is_in_rows = input::has_equal_elements(config), are_several = processes.size() > 1;
+  const bool is_in_rows = has_equal_elements(problem), are_several = processes.size() > 1;
   auto message = processes.from_root([&](MessageBuffer& to) {
     const auto order = order_of(*folder);
     if (are_several && !order.file.empty()) files::write_text(order.sign, order.sign_text);
@@ -100,7 +100,7 @@ void write_fields(const results::ResultFolder* folder, const input::Case& config
   if (order.file.empty()) return;
   if (is_in_rows && are_several && all_see(order, processes)) {
     try {
-      return write(order, config, [&] { return snapshot_mesh_in_rows(config, processes.size()); },
+      return write(order, problem, [&] { return snapshot_mesh_in_rows(problem, processes.size()); },
                    {processes.rank(), processes.size(), [&](const auto& work) { processes.together(work); }});
     } catch (const ProcessError& error) {
       throw WriteError("{}", error.what());
@@ -111,9 +111,9 @@ void write_fields(const results::ResultFolder* folder, const input::Case& config
       note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",
                        results::snapshot_file, folder->dir().string()));
     const auto make_mesh = [&] {
-      return is_in_rows ? snapshot_mesh_in_rows(config) : whole_snapshot_mesh(check(config, processes));
+      return is_in_rows ? snapshot_mesh_in_rows(problem) : whole_snapshot_mesh(check(problem, processes));
     };
-    write(order, config, make_mesh, {});
+    write(order, problem, make_mesh, {});
   });
 }
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 #include "processes/processes.hpp"
 #include "results/folder.hpp"
 
@@ -15,7 +15,7 @@ namespace slipfront::run {
 /// made in rows and all ranks see the folder, each writes some of them. Collective.
 /// @param folder, note  on rank 0: of the run; receives the reason why the others do not help
 /// @throws WriteError; FailedElsewhere on the ranks that have not failed
-void write_fields(const results::ResultFolder* folder, const input::Case& config, Processes& processes,
+void write_fields(const results::ResultFolder* folder, const Problem& problem, Processes& processes,
                   const std::function<void(const std::string&)>& note);
 
 }  // namespace slipfront::run

@@ -7,28 +7,28 @@
 
 namespace slipfront::run {
 
-std::string FinishedRuns::key_of(const input::Case& config) {
-  return files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text +
-                       config.friction_along_x.table.text);
+std::string FinishedRuns::key_of(const Problem& problem) {
+  return files::sha256(program_identity() + "\n" + problem.source.case_text + problem.source.prestress_table +
+                       problem.source.friction_table);
 }
 
-std::filesystem::path FinishedRuns::file_of(const input::Case& config) const {
-  return dir_ / (key_of(config).substr(0, 32) + ".bin");
+std::filesystem::path FinishedRuns::file_of(const Problem& problem) const {
+  return dir_ / (key_of(problem).substr(0, 32) + ".bin");
 }
 
-bool FinishedRuns::has(const input::Case& config) const {
-  return files::is_there(file_of(config));
+bool FinishedRuns::has(const Problem& problem) const {
+  return files::is_there(file_of(problem));
 }
 
-bool FinishedRuns::take(const input::Case& config, Result& result, InitialState& initial) const {
-  if (!has(config)) return false;
+bool FinishedRuns::take(const Problem& problem, Result& result, InitialState& initial) const {
+  if (!has(problem)) return false;
   try {
-    results::InputArchive archive(file_of(config));
+    results::InputArchive archive(file_of(problem));
     std::string key;
     archive(key);
-    if (key != key_of(config)) return false;  // a file that took another one's name
+    if (key != key_of(problem)) return false;  // a file that took another one's name
     archive(result);
-    initial = read_initial_state(archive, config);
+    initial = read_initial_state(archive, problem);
     archive.close();
     const auto& event = result.event;
     if (event.energies.empty() || event.record.x_m != initial.subcritical.tractions.x_m ||
@@ -37,8 +37,8 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
   } catch (const UserError&) {
     return false;
   }
-  result.config = config;
-  result.speeds = wave_speeds(config.material);
+  result.problem = problem;
+  result.speeds = wave_speeds(problem.above().material);
   analyse(result, initial);
   return true;
 }
@@ -47,8 +47,8 @@ void FinishedRuns::keep(const Result& result, const InitialState& initial) const
   if (!files::is_there(dir_)) files::make_folder(dir_);
   auto light = initial;
   light.release_displacements();
-  results::OutputArchive archive(file_of(result.config));
-  auto key = key_of(result.config);
+  results::OutputArchive archive(file_of(result.problem));
+  auto key = key_of(result.problem);
   archive(key, result, light);
   archive.close();
 }

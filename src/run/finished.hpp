@@ -16,16 +16,16 @@ class FinishedRuns {
   /// @param dir  made when the first run is kept
   explicit FinishedRuns(std::filesystem::path dir) : dir_(std::move(dir)) {}
 
-  bool has(const input::Case& config) const;
+  bool has(const Problem& problem) const;
   /// @return whether it was there and intact
-  bool take(const input::Case& config, Result& result, InitialState& initial) const;
+  bool take(const Problem& problem, Result& result, InitialState& initial) const;
   /// @throws WriteError
   void keep(const Result& result, const InitialState& initial) const;
 
  private:
   /// What a kept run is known by: the program and the case.
-  static std::string key_of(const input::Case& config);
-  std::filesystem::path file_of(const input::Case& config) const;
+  static std::string key_of(const Problem& problem);
+  std::filesystem::path file_of(const Problem& problem) const;
 
   std::filesystem::path dir_;
 };

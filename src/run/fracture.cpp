@@ -15,10 +15,9 @@
 #include "base/numbers.hpp"
 #include "boundary/boundary.hpp"
 #include "fracture/static_crack.hpp"
-#include "input/friction_along_x.hpp"
 #include "interface/nucleation.hpp"
 #include "motion/trigger_zone.hpp"
-#include "run/choices.hpp"
+#include "problem/contact.hpp"
 #include "run/outlook.hpp"
 #include "run/run.hpp"
 #include "statics/condensed_interface.hpp"
@@ -35,9 +34,9 @@ constexpr double most_columns_of_sample = 1500, most_unknowns_of_sample = 1e6,
 constexpr double rows_of_half_spaces = 32;
 
 /// Whether the sample's edges enter: where its far edges are held.
-bool is_held(const input::Case& config) {
-  return config.plate.top == mesh::Top::loaded &&
-         (!input::has_base_body(config) || config.base.plate.top == mesh::Top::loaded);
+bool is_held(const Problem& problem) {
+  return std::ranges::all_of(problem.bodies,
+                             [](const auto& body) { return body.plate.top == mesh::Top::loaded; });
 }
 
 double columns_of(const mesh::Plate& plate) {
@@ -50,63 +49,63 @@ double height_in_elements_m(double height_m, double element_size_m) {
 }
 
 /// What elements of this size change the heights of the sample by, over them.
-double change_of_heights(const input::Case& config, double element_size_m) {
-  const auto change = [&](double height_m) {
-    return std::abs(height_in_elements_m(height_m, element_size_m) / height_m - 1);
-  };
-  const double of_plate = change(config.plate.height_m);
-  return input::has_base_body(config) ? std::max(of_plate, change(config.base.plate.height_m)) : of_plate;
+double change_of_heights(const Problem& problem, double element_size_m) {
+  double most = 0;
+  for (const auto& body : problem.bodies) {
+    const double height_m = body.plate.height_m;
+    most = std::max(most, std::abs(height_in_elements_m(height_m, element_size_m) / height_m - 1));
+  }
+  return most;
 }
 
 /// The largest number of columns that a prediction takes, and of those near it that which changes heights
 /// least.
-double fewer_columns(const input::Case& config) {
-  const double columns = columns_of(config.plate);
-  if (!is_held(config)) return std::min(columns, most_columns_of_half_spaces);
-  const auto unknowns = approximate_unknowns(config);
-  const double too_many = (unknowns.of_plate + unknowns.of_base) / most_unknowns_of_sample;
+double fewer_columns(const Problem& problem) {
+  const double columns = columns_of(problem.above().plate);
+  if (!is_held(problem)) return std::min(columns, most_columns_of_half_spaces);
+  const double too_many = 2 * mesh_size(problem).n_nodes / most_unknowns_of_sample;
   if (columns <= most_columns_of_sample && too_many <= 1) return columns;
   const double most = std::max(
       2.0, std::floor(std::min(most_columns_of_sample, columns / std::sqrt(std::max(1.0, too_many)))));
   double best = most;
   for (double n = most; n >= std::max(2.0, 0.5 * most); --n) {
-    const double width_m = config.plate.width_m;
-    if (change_of_heights(config, width_m / n) < (1 - 1e-6) * change_of_heights(config, width_m / best))
+    const double width_m = problem.width_m();
+    if (change_of_heights(problem, width_m / n) < (1 - 1e-6) * change_of_heights(problem, width_m / best))
       best = n;
   }
   return best;
 }
 
 /// The case in larger elements where it has more of them than a prediction takes.
-input::Case in_fewer_elements(input::Case config) {
-  auto& plate = config.plate;
-  const double columns = columns_of(plate), fewer = fewer_columns(config);
-  if (fewer == columns && is_held(config)) return config;
+Problem in_fewer_elements(Problem problem) {
+  const auto& plate = problem.above().plate;
+  const double columns = columns_of(plate), fewer = fewer_columns(problem);
+  const bool held = is_held(problem);
+  if (fewer == columns && held) return problem;
+  if (plate.corner != mesh::Corner::none && fewer < columns)
+    problem.above().plate.corner = mesh::Corner::none;
   const double h = plate.width_m / fewer;
-  const auto fit = [&](mesh::Plate& body) {
-    body.height_m = is_held(config) ? height_in_elements_m(body.height_m, h) : rows_of_half_spaces * h;
-    body.coarsenings = 0;
-  };
-  plate.element_size_m = h;
-  fit(plate);
-  if (input::has_base_body(config)) fit(config.base.plate);
-  if (plate.corner != mesh::Corner::none && fewer < columns) plate.corner = mesh::Corner::none;
-  config.time.interface_rows = 1;
-  return config;
+  for (auto& body : problem.bodies) {
+    body.plate.element_size_m = h;
+    body.plate.height_m = held ? height_in_elements_m(body.plate.height_m, h) : rows_of_half_spaces * h;
+    body.plate.coarsenings = 0;
+  }
+  problem.time.interface_rows = 1;
+  return problem;
 }
 
 /// Response of the sample with its far edges held.
-fracture::SlipResponse response_of_sample(const input::Case& config, const InitialState& initial) {
+fracture::SlipResponse response_of_sample(const Problem& problem, const InitialState& initial) {
   using statics::Factorisation;
   const auto plate = std::make_shared<const Factorisation>(
-      statics::ElasticBody{initial.mesh, config.material, config.machine},
-      statics::constraint_under_shear(boundary::make_boundary(initial.mesh, config.machine)));
+      statics::ElasticBody{initial.mesh, problem.above().material, problem.above().machine},
+      statics::constraint_under_shear(boundary::make_boundary(initial.mesh, problem.above().machine)));
   std::shared_ptr<const Factorisation> base;
   if (initial.base)
     base = std::make_shared<const Factorisation>(
-        statics::ElasticBody{*initial.base, input::base_material(config)}, statics::TopConstraint::both);
+        statics::ElasticBody{*initial.base, problem.below().material}, statics::TopConstraint::both);
   const statics::CondensedInterface interface(plate, base);
-  return fracture::response_of_sample(interface.stiffness(), interface_x_m(initial.mesh),
+  return fracture::response_of_sample(interface.stiffness(), mesh::interface_x_m(initial.mesh),
                                       initial.tributary_m);
 }
 
@@ -143,8 +142,8 @@ struct Laws {
   std::vector<interface::FrictionLaw> of_nodes;  ///< empty where all have that of the case
   const interface::FrictionLaw& of_case;
 
-  Laws(const input::Case& config, const std::vector<double>& x_m)
-      : of_nodes(input::friction_at(config, x_m)), of_case(config.friction) {}
+  Laws(const Problem& problem, const std::vector<double>& x_m, const std::vector<double>& healed)
+      : of_nodes(friction_at(problem, x_m, healed)), of_case(problem.friction.law) {}
   const interface::FrictionLaw& operator[](std::size_t k) const {
     return of_nodes.empty() ? of_case : of_nodes[k];
   }
@@ -152,13 +151,13 @@ struct Laws {
 
 /// Fills in what friction does behind a tip.
 /// @return the fracture energy, J/m2 [nodes]
-std::vector<double> add_friction(const input::Case& config, const Laws& laws, const TipFriction& given,
+std::vector<double> add_friction(const Problem& problem, const Laws& laws, const TipFriction& given,
                                  const record::StaticState& before, fracture::CrackLoads& loads) {
   for (const double c : given.residual_coefficient)
     if (!(c >= 0 && c <= 100))
       throw UserError("{} is {:g}; it must be from 0 to 100",
                       for_caller("--residual-coefficient", "residual_coefficient"), c);
-  const bool follows_pressure = interface::follows_pressure(config.regularisation);
+  const bool follows_pressure = interface::follows_pressure(problem.friction.regularisation);
   std::vector<double> energies;
   for (std::size_t k = 0; k < before.x_m.size(); ++k) {
     const auto& law = laws[k];
@@ -178,9 +177,9 @@ std::vector<double> add_friction(const input::Case& config, const Laws& laws, co
 }
 
 /// Adds the trigger's tractions, where they stay.
-void add_trigger(const input::Case& config, const InitialState& initial, std::vector<double>& t_Pa) {
-  if (std::isfinite(config.trigger.duration_s)) return;
-  const auto loads = loads_of_event(config, initial);
+void add_trigger(const Problem& problem, const InitialState& initial, std::vector<double>& t_Pa) {
+  if (std::isfinite(problem.start.trigger.duration_s)) return;
+  const auto loads = loads_of_event(problem, initial);
   for (std::size_t k = 0; k < loads.trigger_force_N_per_m.size(); ++k)
     t_Pa[k] += loads.trigger_force_N_per_m[k] / initial.tributary_m[k];
 }
@@ -205,7 +204,7 @@ double nucleation_length_m(const Laws& laws, const fracture::SlipResponse& respo
 }
 
 /// Nodes of the first crack: at a place, the trigger's, or the node that is nearest to its strength.
-Patch first_crack(const input::Case& config, const InitialState& initial, const std::optional<double>& x_m) {
+Patch first_crack(const Problem& problem, const InitialState& initial, const std::optional<double>& x_m) {
   const auto& nodes_x_m = initial.subcritical.tractions.x_m;
   const auto nearest = [&](double x) {
     const auto away = [&](double node_x) { return std::abs(node_x - x); };
@@ -215,14 +214,15 @@ Patch first_crack(const input::Case& config, const InitialState& initial, const 
     throw UserError("{} is {:g} m; the interface goes from {:g} to {:g} m", for_caller("--x", "at_x_m"), *x_m,
                     nodes_x_m.front(), nodes_x_m.back());
   if (x_m) return {nearest(*x_m), nearest(*x_m)};
-  if (interface::is_at_edge(config.event)) {
-    const auto zone = motion::trigger_zone(initial.subcritical, config.event, config.trigger.zone_m);
+  if (interface::is_at_edge(problem.start.kind)) {
+    const auto zone =
+        motion::trigger_zone(initial.subcritical, problem.start.kind, problem.start.trigger.zone_m);
     if (!zone.empty()) return {zone.front(), zone.back()};
   }
-  if (config.event == interface::EventKind::nucleation) {
-    const auto& n = config.nucleation;
-    if (config.plate.sides == mesh::Sides::periodic &&
-        std::abs(n.x_m - 0.5 * config.plate.width_m) + 0.5 * n.length_m() > 0.5 * config.plate.width_m)
+  if (problem.start.kind == interface::EventKind::nucleation) {
+    const auto& n = problem.start.nucleation;
+    if (problem.above().plate.sides == mesh::Sides::periodic &&
+        std::abs(n.x_m - 0.5 * problem.width_m()) + 0.5 * n.length_m() > 0.5 * problem.width_m())
       throw UserError(
           "{} = {:g} m puts the patch across the seam of a periodic plate, which counts as its ends; "
           "move it to the middle",
@@ -274,94 +274,97 @@ std::string doubt_of_speeds(const fracture::Bodies& bodies, const fracture::Pred
 
 /// Why fronts may run on where G at rest falls below the fracture energy; empty where nothing speaks against
 /// an arrest there.
-std::vector<std::string> doubts_of_arrest(const input::Case& config, bool by_law,
-                                          const std::string& of_speeds) {
+std::vector<std::string> doubts_of_arrest(const Problem& problem, bool by_law, const std::string& of_speeds) {
   std::vector<std::string> doubts;
-  if (input::starts_by_force(config))
+  if (problem.start.is_by_force())
     doubts.emplace_back(
         "the trigger's force drives fronts further than the energy release rate at rest tells");
   if (!of_speeds.empty()) doubts.push_back(of_speeds);
-  if (config.friction.has_state() && by_law)
+  if (problem.friction.law.has_state() && by_law)
     doubts.emplace_back("the residual friction depends on the slip rate");
   return doubts;
 }
 
 /// What the prediction leaves out.
 /// @param residual  coefficient, the largest one
-void add_notes(const input::Case& given, const input::Case& config, const fracture::Bodies& bodies,
-               double residual, bool by_law, bool has_state_before, FracturePrediction& p) {
-  const auto absorbs = [](const mesh::Plate& plate) {
-    return plate.sides != mesh::Sides::free && plate.top == mesh::Top::absorbing;
+void add_notes(const Problem& given, const Problem& problem, const fracture::Bodies& bodies, double residual,
+               bool by_law, bool has_state_before, FracturePrediction& p) {
+  const auto absorbs = [](const problem::Body& body) {
+    return body.plate.sides != mesh::Sides::free && body.plate.top == mesh::Top::absorbing;
   };
-  if (!is_held(config) &&
-      !(absorbs(config.plate) && (!input::has_base_body(config) || absorbs(config.base.plate))))
+  if (!is_held(problem) && !std::ranges::all_of(problem.bodies, absorbs))
     p.notes.emplace_back(
         "edges are left out, the crack is one between half-spaces: of samples with both far edges held alone "
         "they are taken in");
-  if (is_held(config) && config.plate.sides == mesh::Sides::absorbing)
+  if (is_held(problem) && problem.above().plate.sides == mesh::Sides::absorbing)
     p.notes.emplace_back("absorbing sides count as free ones");
   if (const double eps = exponent_by_pressure(bodies, residual); eps != 0)
     p.notes.push_back(fmt::format(
         "slip changes the pressure: speeds leave it out, and G at rest depends on the element size, by "
         "{:.2g} % for one half as large",
         100 * (std::exp2(2 * eps) - 1)));
-  if (const double factor = config.plate.element_size_m / given.plate.element_size_m; factor > 1.01) {
+  if (const double factor = problem.element_size_m() / given.element_size_m(); factor > 1.01) {
     auto note =
         fmt::format("elements are {:.3g} times those of the case, {:.3g} m: what is shorter is smeared",
-                    factor, config.plate.element_size_m);
-    if (is_held(config))
+                    factor, problem.element_size_m());
+    if (is_held(problem))
       note += fmt::format("; heights change by {:.2g} %, and G of a strip as much",
-                          100 * change_of_heights(given, config.plate.element_size_m));
+                          100 * change_of_heights(given, problem.element_size_m()));
     p.notes.push_back(std::move(note));
   }
-  if (config.plate.sides == mesh::Sides::periodic)
+  if (problem.above().plate.sides == mesh::Sides::periodic)
     p.notes.emplace_back("periodic sides count as ends of the contact");
-  if (config.friction.has_state() && by_law)
+  if (problem.friction.law.has_state() && by_law)
     p.notes.push_back(fmt::format(
         "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
         "the event on",
         slip_rate_at_tip_m_per_s));
-  if (input::is_sequence(given) && !has_state_before)
-    p.notes.emplace_back(input::heals(given) ? "of the first event of the sequence, before its strength heals"
-                                             : "of the first event of the sequence");
-  if (given.loading.method == statics::LoadingMethod::ramp)
+  if (given.is_sequence() && !has_state_before)
+    p.notes.emplace_back(given.heals() ? "of the first event of the sequence, before its strength heals"
+                                       : "of the first event of the sequence");
+  if (given.is_by_ramp())
     p.notes.emplace_back("the state before the event is that of loading.method = direct");
-  if (input::has_growing_tractions(config)) p.notes.emplace_back("tractions that grow count as at the start");
+  if (problem.has_growing_tractions()) p.notes.emplace_back("tractions that grow count as at the start");
 }
 
 }  // namespace
 
-bool has_fracture_energy(const input::Case& config) {
-  return config.friction.has_state() || interface::weakening_slip_m(config.friction);
+bool has_fracture_energy(const Problem& problem) {
+  return problem.friction.law.has_state() || interface::weakening_slip_m(problem.friction.law);
 }
 
-FrontPredictor::FrontPredictor(const input::Case& given) : given_(given), config_(in_fewer_elements(given)) {
-  if (config_.loading.method == statics::LoadingMethod::ramp)
-    config_.loading.method = statics::LoadingMethod::direct;
-  initial_ = make_initial_state(config_, [](auto, auto) { return true; });
+FrontPredictor::FrontPredictor(const Problem& given) : given_(given), problem_(in_fewer_elements(given)) {
+  if (problem_.is_by_ramp()) problem_.loading.method = statics::LoadingMethod::direct;
+  initial_ = make_initial_state(problem_, [](auto, auto) { return true; });
   response_ = std::make_shared<const fracture::SlipResponse>(
-      is_held(config_)
-          ? response_of_sample(config_, initial_)
-          : fracture::response_of_half_spaces(bodies_of(config_), initial_.subcritical.tractions.x_m));
+      is_held(problem_)
+          ? response_of_sample(problem_, initial_)
+          : fracture::response_of_half_spaces(materials_of(problem_), initial_.subcritical.tractions.x_m));
+}
+
+void FrontPredictor::set_healed(const std::vector<double>& x_m, const std::vector<double>& healed) {
+  initial_.healed.clear();
+  if (healed.empty()) return;
+  for (const double x : initial_.subcritical.tractions.x_m) initial_.healed.push_back(at(x_m, healed, x));
 }
 
 FracturePrediction FrontPredictor::predict(const TipFriction& friction, const std::optional<double>& x_m,
                                            const record::StaticState* given_before) const {
-  const auto bodies = bodies_of(config_);
+  const auto bodies = materials_of(problem_);
   auto before = initial_.subcritical.tractions;
   for (std::size_t k = 0; given_before != nullptr && k < before.x_m.size(); ++k) {
     before.t_s_Pa[k] = at(given_before->x_m, given_before->t_s_Pa, before.x_m[k]);
     before.p_s_Pa[k] = at(given_before->x_m, given_before->p_s_Pa, before.x_m[k]);
   }
-  const Laws laws(config_, before.x_m);
+  const Laws laws(problem_, before.x_m, initial_.healed);
   FracturePrediction p;
   p.n_nodes = before.x_m.size();
   fracture::CrackLoads loads;
   loads.t_Pa = before.t_s_Pa;
   loads.p_Pa = before.p_s_Pa;
-  const auto energies = add_friction(config_, laws, friction, before, loads);
-  add_trigger(config_, initial_, loads.t_Pa);
-  p.bodies = is_held(config_) ? "the sample, its far edges held" : "half-spaces";
+  const auto energies = add_friction(problem_, laws, friction, before, loads);
+  add_trigger(problem_, initial_, loads.t_Pa);
+  p.bodies = is_held(problem_) ? "the sample, its far edges held" : "half-spaces";
   // To the side to which the load drives the plate.
   double force = 0;
   for (const double t_Pa : loads.t_Pa) force += t_Pa;
@@ -375,43 +378,43 @@ FracturePrediction FrontPredictor::predict(const TipFriction& friction, const st
   if (auto doubt = doubt_of_forced_patch(given_); !x_m && !doubt.empty())
     throw UserError("no fronts to predict: {}; or give {}", doubt, for_caller("--x", "at_x_m"))
         .about("nucleation.front_speed_m_per_s");
-  const auto patch = first_crack(config_, initial_, x_m);
+  const auto patch = first_crack(problem_, initial_, x_m);
   p.covers_all = patch.first == 0 && patch.last + 1 == p.n_nodes;
-  p.nucleation_length_m =
-      nucleation_length_m(laws, response, before, interface::follows_pressure(config_.regularisation),
-                          p.covers_all || patch.first == 0 ? patch.first
-                          : patch.last + 1 == p.n_nodes    ? patch.last
-                                                           : (patch.first + patch.last) / 2);
+  p.nucleation_length_m = nucleation_length_m(laws, response, before,
+                                              interface::follows_pressure(problem_.friction.regularisation),
+                                              p.covers_all || patch.first == 0 ? patch.first
+                                              : patch.last + 1 == p.n_nodes    ? patch.last
+                                                                            : (patch.first + patch.last) / 2);
   p.of_fronts =
       fracture::predict(response, loads, energies, patch.first, patch.last, fracture::SpeedLaw(bodies));
   const bool by_law = friction.fracture_energy_J_per_m2.empty();
-  add_notes(given_, config_, bodies, std::ranges::max(loads.residual_coefficient), by_law,
+  add_notes(given_, problem_, bodies, std::ranges::max(loads.residual_coefficient), by_law,
             given_before != nullptr, p);
   const auto& fronts = p.of_fronts.fronts;
   auto of_speeds = doubt_of_speeds(bodies, p.of_fronts, median_strength_excess(laws, loads, fronts));
   if (std::ranges::any_of(fronts, &fracture::PredictedFront::arrests))
-    p.doubts_of_arrest = doubts_of_arrest(config_, by_law, of_speeds);
+    p.doubts_of_arrest = doubts_of_arrest(problem_, by_law, of_speeds);
   if (!p.doubts_of_arrest.empty())
     p.notes.push_back(fmt::format("no arrest is predicted: {}", fmt::join(p.doubts_of_arrest, "; ")));
   else if (!of_speeds.empty())
     p.notes.push_back(std::move(of_speeds));
-  if (auto doubt = doubt_of_beginning(config_, initial_.subcritical);
+  if (auto doubt = doubt_of_beginning(problem_, initial_.subcritical);
       given_before == nullptr && !doubt.empty())
     p.notes.push_back(std::move(doubt));
   return p;
 }
 
-FracturePrediction predict_fronts(const input::Case& config, const TipFriction& friction,
+FracturePrediction predict_fronts(const Problem& problem, const TipFriction& friction,
                                   const std::optional<double>& x_m) {
-  return FrontPredictor(config).predict(friction, x_m);
+  return FrontPredictor(problem).predict(friction, x_m);
 }
 
-std::optional<FracturePrediction> quick_prediction(const input::Case& config) {
-  if (!input::is_prestressed(config) || is_held(config) || config.event == interface::EventKind::none ||
-      config.plate.sides == mesh::Sides::periodic || !has_fracture_energy(config) ||
-      !doubt_of_forced_patch(config).empty())
+std::optional<FracturePrediction> quick_prediction(const Problem& problem) {
+  if (!problem.is_prestressed() || is_held(problem) || problem.start.kind == interface::EventKind::none ||
+      problem.above().plate.sides == mesh::Sides::periodic || !has_fracture_energy(problem) ||
+      !doubt_of_forced_patch(problem).empty())
     return {};
-  return predict_fronts(config);
+  return predict_fronts(problem);
 }
 
 }  // namespace slipfront::run

@@ -9,7 +9,7 @@
 
 #include "base/numbers.hpp"
 #include "fracture/prediction.hpp"
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 #include "record/record.hpp"
 #include "run/initial_state.hpp"
 
@@ -45,17 +45,17 @@ struct FracturePrediction {
 
 /// Where these take no statics and the law has a fracture energy: of prescribed tractions, the far edge not
 /// held.
-std::optional<FracturePrediction> quick_prediction(const input::Case& config);
+std::optional<FracturePrediction> quick_prediction(const Problem& problem);
 
 /// Whether the law has a fracture energy of its own.
-bool has_fracture_energy(const input::Case& config);
+bool has_fracture_energy(const Problem& problem);
 
 /// Predicts fronts of one sample. Its statics are solved once, with elements large enough for some hundreds
 /// of nodes on the interface.
 class FrontPredictor {
  public:
   /// @throws UserError as the statics of the case
-  explicit FrontPredictor(const input::Case& config);
+  explicit FrontPredictor(const Problem& problem);
 
   /// @param friction  instead of the law's
   /// @param x_m       where the crack begins, instead of at the case's trigger
@@ -63,17 +63,18 @@ class FrontPredictor {
   /// @throws UserError where the law has no fracture energy of its own and none is given
   FracturePrediction predict(const TipFriction& friction = {}, const std::optional<double>& x_m = {},
                              const record::StaticState* before = nullptr) const;
-  /// From here on with other friction along the interface.
-  void set_friction(const input::FrictionAlongX& friction) { config_.friction_along_x = friction; }
+  /// From here on with mu_s that has grown at rest by `healed` at places, linear between; empty where it has
+  /// not.
+  void set_healed(const std::vector<double>& x_m, const std::vector<double>& healed);
 
  private:
-  input::Case given_, config_;
+  Problem given_, problem_;
   InitialState initial_;
   std::shared_ptr<const fracture::SlipResponse> response_;
 };
 
 /// Prediction of one event.
-FracturePrediction predict_fronts(const input::Case& config, const TipFriction& friction = {},
+FracturePrediction predict_fronts(const Problem& problem, const TipFriction& friction = {},
                                   const std::optional<double>& x_m = {});
 
 }  // namespace slipfront::run

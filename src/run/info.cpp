@@ -14,12 +14,10 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
-#include "input/friction_along_x.hpp"
-#include "input/pressure.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
-#include "run/choices.hpp"
+#include "problem/contact.hpp"
 #include "run/initial_state.hpp"
 #include "run/notes.hpp"
 #include "run/run.hpp"
@@ -32,20 +30,20 @@ namespace slipfront::run {
 namespace {
 
 /// Tractions before the event; under a tilt those of the nominal pressure when the weakest node slips.
-record::StaticState expected_tractions(const input::Case& config, const mesh::Mesh& mesh,
+record::StaticState expected_tractions(const Problem& problem, const mesh::Mesh& mesh,
                                        const std::vector<interface::FrictionLaw>& laws) {
-  if (is_prestressed(config)) return prescribed_tractions(config, mesh);
-  const double p_Pa = input::nominal_pressure_Pa(config);
+  if (problem.is_prestressed()) return prescribed_tractions(problem, mesh::interface_x_m(mesh));
+  const double p_Pa = nominal_pressure_Pa(problem);
   double least_Pa = infinity;
   for (const auto& law : laws) least_Pa = std::min(least_Pa, interface::static_strength_Pa(law, p_Pa));
-  return {interface_x_m(mesh), std::vector(laws.size(), least_Pa), std::vector(laws.size(), p_Pa)};
+  return {mesh::interface_x_m(mesh), std::vector(laws.size(), least_Pa), std::vector(laws.size(), p_Pa)};
 }
 
 /// Nodes that a front can break: t is short of the strength by at most so many times the largest stress drop
 /// as a barrier is; all where t drops nowhere, or under a law that never sticks.
-std::vector<std::size_t> nodes_that_can_slip(const input::Case& config, const mesh::Mesh& mesh,
+std::vector<std::size_t> nodes_that_can_slip(const Problem& problem, const mesh::Mesh& mesh,
                                              const std::vector<interface::FrictionLaw>& laws) {
-  const auto s = expected_tractions(config, mesh, laws);
+  const auto s = expected_tractions(problem, mesh, laws);
   double largest_drop_Pa = 0;
   for (std::size_t k = 0; k < laws.size(); ++k)
     largest_drop_Pa = std::max(largest_drop_Pa, std::abs(s.t_s_Pa[k]) - laws[k].cohesion_Pa() -
@@ -90,14 +88,14 @@ bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness&
 }
 
 /// @return notes: of which friction nothing can be said
-std::vector<std::string> add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
-  const double pressure_Pa = input::nominal_pressure_Pa(config);
+std::vector<std::string> add_well_posedness(const Problem& problem, const mesh::Mesh& mesh, Info& info) {
+  const double pressure_Pa = nominal_pressure_Pa(problem);
   std::vector<std::string> notes;
   auto& worst = info.well_posedness;
   const auto consider = [&](const interface::FrictionLaw& law, double x_m) {
     const auto here =
-        stability::well_posedness(bodies_of(config), law, pressure_Pa, config.plate.element_size_m,
-                                  config.plate.width_m, config.regularisation);
+        stability::well_posedness(materials_of(problem), law, pressure_Pa, problem.element_size_m(),
+                                  problem.width_m(), problem.friction.regularisation);
     if (!here.has_verdict())
       notes.push_back(fmt::format(
           "uniform sliding{}: {}",
@@ -106,19 +104,19 @@ std::vector<std::string> add_well_posedness(const input::Case& config, const mes
     worst = here;
     info.well_posedness_x_m = x_m;
   };
-  const auto x_m = interface_x_m(mesh);
-  const auto laws = input::friction_at(config, x_m);
+  const auto x_m = mesh::interface_x_m(mesh);
+  const auto laws = friction_at(problem, x_m);
   if (laws.empty()) {
-    consider(config.friction, nan);
+    consider(problem.friction.law, nan);
     return notes;
   }
-  const auto can_slip = nodes_that_can_slip(config, mesh, laws);
+  const auto can_slip = nodes_that_can_slip(problem, mesh, laws);
   if (can_slip.empty()) {
     worst.fastest_growth_per_s = nan;
     worst.statement = "no verdict: t is too far below the strength for any node to slip";
     return {"uniform sliding: " + worst.statement};
   }
-  for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, config.regularisation))
+  for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, problem.friction.regularisation))
     consider(laws[node], x_m[node]);
   return notes;
 }
@@ -131,14 +129,14 @@ struct Timed {
   double share = 1;  ///< of the whole
 };
 
-void add_sizes(const input::Case& config, const Meshes& meshes, Info& info) {
+void add_sizes(const Problem& problem, const Meshes& meshes, Info& info) {
   info.n_nodes = n_nodes_of(meshes.plate);
   info.n_cells = n_cells_of(meshes.plate);
   info.n_interface = std::ssize(meshes.plate.interface_nodes);
   if (!meshes.base) return;
-  info.base_speeds = wave_speeds(input::base_material(config));
+  info.base_speeds = wave_speeds(problem.below().material);
   info.generalised_rayleigh_speed_m_per_s =
-      stability::generalised_rayleigh_speed_m_per_s(config.material, input::base_material(config));
+      stability::generalised_rayleigh_speed_m_per_s(problem.above().material, problem.below().material);
   info.n_nodes += n_nodes_of(*meshes.base);
   info.n_cells += n_cells_of(*meshes.base);
 }
@@ -162,39 +160,39 @@ Size size_of(const Meshes& meshes, const Info& info) {
           static_cast<double>(info.n_interface), info.step_s};
 }
 
-void add_needs(const input::Case& config, const Meshes& meshes, double node_updates_per_step, Info& info) {
-  info.needs = needs(config, size_of(meshes, info));
+void add_needs(const Problem& problem, const Meshes& meshes, double node_updates_per_step, Info& info) {
+  info.needs = needs(problem, size_of(meshes, info));
   info.n_steps = info.needs.steps;
   info.node_updates = static_cast<double>(info.n_steps) * node_updates_per_step +
                       static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);
   info.memory_bytes = info.needs.memory_bytes();
   info.solver_bytes = info.needs.statics_bytes;
-  if (!is_prestressed(config))
-    info.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(info.n_nodes));
+  if (!problem.is_prestressed())
+    info.solver = statics::choose_solver(wanted_solver(problem), 2.0 * static_cast<double>(info.n_nodes));
 }
 
 /// Most steps that are taken without a look at the event.
 constexpr double steps_per_look = 50;
 
 /// Times at which the event is looked at: every so many steps, and for energies and snapshots.
-double looks_of(const input::Case& config, const Needs& needs) {
+double looks_of(const Problem& problem, const Needs& needs) {
   const auto steps = static_cast<double>(needs.steps);
-  return std::min(steps, steps / steps_per_look + config.time.end_s / config.output.energy_interval_s +
+  return std::min(steps, steps / steps_per_look + problem.time.end_s / problem.output.energy_interval_s +
                              needs.snapshots + 1);
 }
 
 /// Node updates/s of this machine, from a few steps: under the mean pressure, with half of the interface
 /// sliding, which takes longer than to stick; beside the programs that run now.
 /// @param n_steps  at once
-double measured_rate_per_s(const input::Case& config, const Timed& timed, motion::TimeStepper& stepper,
+double measured_rate_per_s(const Problem& problem, const Timed& timed, motion::TimeStepper& stepper,
                            std::int64_t n_steps) {
   constexpr double min_s = 20e-3, max_s = 0.5;
-  const double mu_s = interface::static_coefficient(config.friction);
+  const double mu_s = interface::static_coefficient(problem.friction.law);
   const auto& plate = *timed.plate;
   const auto n = plate.interface_nodes.size();
   record::StaticState tractions;
-  tractions.x_m = interface_x_m(plate);
-  tractions.p_s_Pa.assign(n, input::nominal_pressure_Pa(config));
+  tractions.x_m = mesh::interface_x_m(plate);
+  tractions.p_s_Pa.assign(n, nominal_pressure_Pa(problem));
   tractions.t_s_Pa.assign(n, 0.0);
   for (std::size_t k = 0; k < n / 2; ++k) tractions.t_s_Pa[k] = 1.1 * mu_s * tractions.p_s_Pa[k];
   const auto state = statics::prestressed(plate, tractions, timed.base);
@@ -224,9 +222,9 @@ double expected_statics_s(const Info& info) {
   return statics_s(info.solver, 2.0 * static_cast<double>(info.n_nodes));
 }
 
-Timed whole_to_time(const input::Case& config, const Meshes& meshes) {
+Timed whole_to_time(const Problem& problem, const Meshes& meshes) {
   Timed timed;
-  timed.stepper = new_stepper(config, meshes.plate, meshes.base);
+  timed.stepper = new_stepper(problem, meshes.plate, meshes.base);
   timed.plate = &meshes.plate;
   timed.base = meshes.base ? &*meshes.base : nullptr;
   return timed;
@@ -240,11 +238,11 @@ double expected_slow_s(const Info& info) {
 }
 
 /// The columns of a part, no more than show the rate.
-Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_processes,
+Timed part_to_time(const Problem& problem, const Meshes& interfaces, int n_processes,
                    IsolatedSubdomain& part) {
   constexpr double max_nodes = 4e6;
   constexpr int min_columns = 64;
-  const GlobalBodies whole(config, interfaces.plate, interfaces.base);
+  const GlobalBodies whole(problem, interfaces.plate, interfaces.base);
   const auto steps = whole.steps();
   const auto partition = whole.divided(n_processes, steps);
   const auto own = partition.own(n_processes / 2);
@@ -252,7 +250,7 @@ Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_pr
   for (const auto& body : whole.bodies()) per_column += body.mesh.grid.rows + 1;
   const int most = std::max(min_columns, static_cast<int>(max_nodes / per_column));
   const int width = std::min(own.end - own.begin, most);
-  part = make_isolated_subdomain(config, interfaces.plate, steps, {own.begin, own.begin + width});
+  part = make_isolated_subdomain(problem, interfaces.plate, steps, {own.begin, own.begin + width});
   Timed timed;
   timed.stepper = std::move(part.stepper);
   timed.plate = &part.plate;
@@ -263,11 +261,11 @@ Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_pr
 
 /// Time of the steps of own and ghost columns, at the measured rate, of what passes through rank 0: samples,
 /// snapshots and initial motion, and of its statics.
-Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Timed& timed, int n_processes,
+Info::Shared shared_by(const Problem& problem, const Meshes& meshes, const Timed& timed, int n_processes,
                        const Info& info) {
   /// Bytes of a node: u and v, as they are sent. Packed, passed on and joined by rank 0, of each byte.
   constexpr double sent_bytes_per_node = 32, s_per_byte = 1 / 0.8e9;
-  const GlobalBodies whole(config, meshes.plate, meshes.base);
+  const GlobalBodies whole(problem, meshes.plate, meshes.base);
   std::vector<motion::BodySteps> body_steps;
   for (const auto& body : timed.stepper->bodies()) body_steps.push_back(body.steps());
   Info::Shared shared;
@@ -290,60 +288,60 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   shared.expected_s = event_s + expected_rest_s(info) + expected_statics_s(info);
 
   const auto size = size_of(meshes, info);
-  shared.root_memory_bytes = needs(config, size, {n_processes, 1, true}).memory_bytes();
-  shared.memory_bytes = needs(config, size, {n_processes, 1, false}).memory_bytes();
+  shared.root_memory_bytes = needs(problem, size, {n_processes, 1, true}).memory_bytes();
+  shared.memory_bytes = needs(problem, size, {n_processes, 1, false}).memory_bytes();
   return shared;
 }
 
 }  // namespace
 
-Info info(const input::Case& config, const std::optional<int>& n_processes) {
+Info info(const Problem& problem, const std::optional<int>& n_processes) {
   Info info;
-  info.speeds = wave_speeds(config.material);
-  const bool is_by_interface = n_processes && root_has_interface_only(config, *n_processes);
-  const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
-  add_sizes(config, meshes, info);
+  info.speeds = wave_speeds(problem.above().material);
+  const bool is_by_interface = n_processes && root_has_interface_only(problem, *n_processes);
+  const auto meshes = is_by_interface ? check_interfaces(problem) : check(problem);
+  add_sizes(problem, meshes, info);
   std::optional<LoadedState> loaded;
   std::string not_loaded;
   try {
-    loaded = loaded_state(config, meshes);
+    loaded = loaded_state(problem, meshes);
   } catch (const UserError& error) {
-    if (!input::is_slow(config)) throw;
+    if (!problem.is_slow()) throw;
     not_loaded = no_static_state(error);
   }
   if (loaded) {
     info.loads = loaded->loads;
-    info.rupture = rupture_outlook(config, loaded->subcritical, mesh::tributary_lengths_m(meshes.plate));
+    info.rupture = rupture_outlook(problem, loaded->subcritical, mesh::tributary_lengths_m(meshes.plate));
   } else {
-    info.rupture = rupture_outlook(config, meshes);
+    info.rupture = rupture_outlook(problem, meshes);
   }
-  info.cheapest_mesh = cheapest_mesh(config, info.rupture);
+  info.cheapest_mesh = cheapest_mesh(problem, info.rupture);
 
   // About as long as making the stepper.
   auto sliding = std::async(std::launch::async | std::launch::deferred,
-                            [&] { return add_well_posedness(config, meshes.plate, info); });
+                            [&] { return add_well_posedness(problem, meshes.plate, info); });
   IsolatedSubdomain part;
   const auto timed =
-      is_by_interface ? part_to_time(config, meshes, *n_processes, part) : whole_to_time(config, meshes);
+      is_by_interface ? part_to_time(problem, meshes, *n_processes, part) : whole_to_time(problem, meshes);
   const auto notes_on_sliding = sliding.get();
   add_steps(timed, info);
   const double node_updates_per_step = timed.stepper->node_updates_per_step();
-  add_needs(config, meshes, node_updates_per_step / timed.share, info);
+  add_needs(problem, meshes, node_updates_per_step / timed.share, info);
   // As many at once as between two looks.
-  const double steps = static_cast<double>(info.n_steps) / looks_of(config, info.needs);
-  if (is_plain(config)) {
-    const auto plain = new_time_stepper(config, meshes.plate, meshes.base);
-    info.node_updates_per_s = measured_rate_per_s(config, timed, *plain, 1);
+  const double steps = static_cast<double>(info.n_steps) / looks_of(problem, info.needs);
+  if (problem.is_plain()) {
+    const auto plain = new_plain_stepper(problem, meshes.plate, meshes.base);
+    info.node_updates_per_s = measured_rate_per_s(problem, timed, *plain, 1);
   } else {
     info.node_updates_per_s =
-        measured_rate_per_s(config, timed, *timed.stepper, std::max(1, static_cast<int>(steps)));
+        measured_rate_per_s(problem, timed, *timed.stepper, std::max(1, static_cast<int>(steps)));
   }
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info) +
                     expected_rest_s(info) + expected_slow_s(info);
-  info.notes = notes_of_case(config, info.rupture, info.step_s);
+  info.notes = notes_of_case(problem, info.rupture, info.step_s);
   if (!not_loaded.empty()) info.notes.push_back(not_loaded);
   info.notes.insert(info.notes.end(), notes_on_sliding.begin(), notes_on_sliding.end());
-  if (n_processes) info.shared = shared_by(config, meshes, timed, *n_processes, info);
+  if (n_processes) info.shared = shared_by(problem, meshes, timed, *n_processes, info);
   return info;
 }
 

@@ -9,14 +9,10 @@
 #include "base/error.hpp"
 #include "boundary/pusher.hpp"
 #include "fronts/front.hpp"
-#include "input/entries.hpp"
-#include "input/friction_along_x.hpp"
-#include "interface/friction/coulomb.hpp"
 #include "mesh/plate.hpp"
 #include "motion/stepper.hpp"
+#include "problem/contact.hpp"
 #include "run/begin.hpp"
-#include "run/choices.hpp"
-#include "run/loading_path.hpp"
 #include "run/needs.hpp"
 #include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
@@ -32,19 +28,6 @@ std::vector<double> at_all_nodes(const PerNode& values, const mesh::Mesh& mesh) 
   return all;
 }
 
-/// What an initial state without motion keeps of friction: the coefficients at rest.
-std::string strengths_text(const input::Case& config) {
-  auto at_rest = config;
-  if (!config.friction_along_x.varies()) {
-    at_rest.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
-    at_rest.friction.parameter(interface::FrictionLaw::cohesion_key) = config.friction.cohesion_Pa();
-  }
-  std::string text;
-  for (const auto& entry : input::entries_of(at_rest))
-    if (input::table_of(entry.key) == "friction") text += input::toml_text(entry.get(at_rest)) + "\n";
-  return text + config.friction_along_x.table.text;
-}
-
 }  // namespace
 
 void InitialState::release_displacements(const statics::Equilibrium* but) {
@@ -55,48 +38,33 @@ void InitialState::release_displacements(const statics::Equilibrium* but) {
       if (state != but) *field = {};
 }
 
-std::string initial_state_key(const input::Case& config) {
-  using input::Stage;
-  if (is_prestressed(config)) {
-    const bool t_follows =
-        config.friction.has_state() && config.prestress.file.empty() && !config.prestress.t_Pa;
-    return text_of_stages(config, {Stage::mesh, Stage::tractions}) +
-           (t_follows ? text_of_stages(config, {Stage::motion}) : "") +
-           (config.friction_along_x.varies() || config.friction.cohesion_Pa() > 0 ? strengths_text(config)
-                                                                                  : "");
-  }
-  // Nodes at the edges slip during a ramp, by the law itself.
-  if (config.loading.method == statics::LoadingMethod::ramp)
-    return text_of_stages(config, {Stage::mesh, Stage::statics, Stage::motion});
-  return text_of_stages(config, {Stage::mesh, Stage::statics}) + strengths_text(config);
-}
-
 namespace {
 
 /// Statics of a tilted plate need edges that hold.
-void require_edges_to_tilt(const input::Case& config) {
-  if (config.plate.sides == mesh::Sides::periodic)
+void require_edges_to_tilt(const Problem& problem) {
+  if (problem.above().plate.sides == mesh::Sides::periodic)
     throw UserError(
         "{} = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or {} = "
         "prestress",
         Key("plate.sides"), Key("loading.method"));
-  if (config.plate.top != mesh::Top::loaded)
-    throw UserError("{} = {} leaves no edge to tilt and shear; choose loaded, or {} = prestress",
-                    Key("plate.top"), config.plate.top == mesh::Top::absorbing ? "absorbing" : "free",
-                    Key("loading.method"));
-  if (input::has_base_body(config) && config.base.plate.top != mesh::Top::loaded)
+  if (problem.above().plate.top != mesh::Top::loaded)
+    throw UserError(
+        "{} = {} leaves no edge to tilt and shear; choose loaded, or {} = prestress", Key("plate.top"),
+        problem.above().plate.top == mesh::Top::absorbing ? "absorbing" : "free", Key("loading.method"));
+  if (problem.has_below() && problem.below().plate.top != mesh::Top::loaded)
     throw UserError("{} = {} does not hold the base under a tilted plate; choose held, or {} = prestress",
-                    Key("base.bottom"), config.base.plate.top == mesh::Top::absorbing ? "absorbing" : "free",
+                    Key("base.bottom"),
+                    problem.below().plate.top == mesh::Top::absorbing ? "absorbing" : "free",
                     Key("loading.method"));
 }
 
-void require_possible_by_plain_scheme(const input::Case& config, const Processes& processes) {
-  if (!is_plain(config)) return;
+void require_possible_by_plain_scheme(const Problem& problem, const Processes& processes) {
+  if (!problem.is_plain()) return;
   const Key stepper("time.stepper");
-  if (config.time.precision == motion::Precision::single_precision)
+  if (problem.time.precision == motion::Precision::single_precision)
     throw UserError("{} = plain computes in double precision; choose {} = double, or fast", stepper,
                     Key("time.precision"));
-  if (config.loading.method == statics::LoadingMethod::ramp)
+  if (problem.is_by_ramp())
     throw UserError("{} = plain computes no ramp; choose {} = direct, or fast", stepper,
                     Key("loading.method"));
   if (processes.size() > 1)
@@ -104,20 +72,20 @@ void require_possible_by_plain_scheme(const input::Case& config, const Processes
                     processes.size());
 }
 
-void require_free_sides_for_single(const input::Case& config) {
-  if (config.time.precision != motion::Precision::single_precision) return;
+void require_free_sides_for_single(const Problem& problem) {
+  if (problem.time.precision != motion::Precision::single_precision) return;
   const auto require = [](const mesh::Plate& plate, const char* sides) {
     if (plate.sides != mesh::Sides::free)
       throw UserError("{} = single needs rows between free sides; choose {} = free or double",
                       Key("time.precision"), Key(sides));
   };
-  require(config.plate, "plate.sides");
-  if (input::has_base_body(config)) require(config.base.plate, "base.sides");
+  require(problem.above().plate, "plate.sides");
+  if (problem.has_below()) require(problem.below().plate, "base.sides");
 }
 
 /// Mesh of the body below, upside down.
-mesh::Mesh make_base(const input::Case& config, bool only_interface) {
-  const auto plate = input::base_plate(config);
+mesh::Mesh make_base(const Problem& problem, bool only_interface) {
+  const auto plate = problem.below().plate;
   const double rows = plate.height_m / plate.element_size_m;
   if (std::abs(rows - std::round(rows)) > 1e-6 * rows)
     throw UserError(
@@ -129,11 +97,11 @@ mesh::Mesh make_base(const input::Case& config, bool only_interface) {
 }
 
 /// Found in those columns of the bodies that are next to each.
-std::vector<motion::Probe> probes_among_columns(const input::Case& config, const mesh::Mesh& interface) {
+std::vector<motion::Probe> probes_among_columns(const Problem& problem, const mesh::Mesh& interface) {
   constexpr int beside = 4;
   const auto& grid = interface.grid;
   std::vector<motion::Probe> probes;
-  for (const auto& place : input::probe_places(config)) {
+  for (const auto& place : problem.probes) {
     const double column = std::clamp(place.x_m / grid.spacing_m, 0.0, static_cast<double>(grid.columns));
     const int begin = std::max(static_cast<int>(column) - beside, 0);
     const int end = std::min(static_cast<int>(column) + beside + 2, grid.stride());
@@ -141,11 +109,11 @@ std::vector<motion::Probe> probes_among_columns(const input::Case& config, const
     if (interface.period_m > 0 && (begin == 0 || end == grid.stride()))
       ranges = {{0, 2 * beside}, {grid.stride() - 2 * beside, grid.stride()}};
     const mesh::Subset columns(ranges);
-    const auto plate = mesh::make_columns(config.plate, columns);
+    const auto plate = mesh::make_columns(problem.above().plate, columns);
     std::optional<mesh::Mesh> base;
-    if (input::has_base_body(config)) base = mesh::make_columns(input::base_plate(config), columns);
+    if (problem.has_below()) base = mesh::make_columns(problem.below().plate, columns);
     auto probe =
-        motion::locate_probes(std::span(&place, 1), GlobalBodies(config, plate, base).bodies()).front();
+        motion::locate_probes(std::span(&place, 1), GlobalBodies(problem, plate, base).bodies()).front();
     const mesh::NodeColumns of_subdomain(probe.body == 0 ? plate : *base, columns, grid.stride());
     for (auto& n : probe.node) n = of_subdomain.global_number(n);
     probes.push_back(probe);
@@ -163,27 +131,27 @@ std::int64_t n_cells_of(const mesh::Mesh& mesh) {
   return mesh.is_interface() ? std::int64_t{mesh.grid.columns} * mesh.grid.rows : std::ssize(mesh.cells);
 }
 
-std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
+std::vector<motion::Probe> probes_of(const Problem& problem, const mesh::Mesh& plate,
                                      const std::optional<mesh::Mesh>& base) {
-  if (config.probes.x_m.empty()) return {};
-  if (plate.is_interface()) return probes_among_columns(config, plate);
-  return motion::locate_probes(input::probe_places(config), GlobalBodies(config, plate, base).bodies());
+  if (problem.probes.empty()) return {};
+  if (plate.is_interface()) return probes_among_columns(problem, plate);
+  return motion::locate_probes(problem.probes, GlobalBodies(problem, plate, base).bodies());
 }
 
 namespace {
 
 /// Laws of all nodes, or the one law that they have.
-std::vector<interface::FrictionLaw> laws_of(const input::Case& config, const mesh::Mesh& plate) {
-  auto laws = input::friction_at(config, interface_x_m(plate));
-  if (laws.empty()) laws.push_back(config.friction);
+std::vector<interface::FrictionLaw> laws_of(const Problem& problem, const mesh::Mesh& plate) {
+  auto laws = friction_at(problem, mesh::interface_x_m(plate));
+  if (laws.empty()) laws.push_back(problem.friction.law);
   return laws;
 }
 
 /// Steady sliding has to have friction at all rates of slow slip: no state belongs to less than none.
-void require_steady_friction(const input::Case& config, const mesh::Mesh& plate) {
+void require_steady_friction(const Problem& problem, const mesh::Mesh& plate) {
   constexpr int n_rates = 100;
-  const double from = config.friction.parameter("V_i_m_per_s"), to = input::tip_slip_rate_m_per_s(config);
-  for (const auto& law : laws_of(config, plate))
+  const double from = problem.friction.law.parameter("V_i_m_per_s"), to = tip_slip_rate_m_per_s(problem);
+  for (const auto& law : laws_of(problem, plate))
     for (int k = 0; k <= n_rates; ++k) {
       const double V_m_per_s = from * std::pow(to / from, static_cast<double>(k) / n_rates);
       const double coefficient = interface::friction_coefficient(law, V_m_per_s, 0);
@@ -196,14 +164,14 @@ void require_steady_friction(const input::Case& config, const mesh::Mesh& plate)
 }
 
 /// An event begins above the rate at which the load lets the interface slide, and below that of its fronts.
-void require_rate_of_events(const input::Case& config) {
+void require_rate_of_events(const Problem& problem) {
   const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_over_c_L");
-  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
-  const double most_m_per_s =
-      std::min(input::radiation_slip_rate_m_per_s(config), input::tip_slip_rate_m_per_s(config));
-  const double load_m_per_s = std::max(LoadingPath(config).fastest_m_per_s(), top_speed_m_per_s(config));
+  const double rate_m_per_s = inertia_slip_rate_m_per_s(problem);
+  const double most_m_per_s = std::min(radiation_slip_rate_m_per_s(problem), tip_slip_rate_m_per_s(problem));
+  const double load_m_per_s = std::max(problem.path().fastest_m_per_s(), problem.shear_speed_m_per_s);
   const Key first("friction.V_i_m_per_s");
-  if (const double first_m_per_s = config.friction.parameter("V_i_m_per_s"); first_m_per_s > most_m_per_s)
+  if (const double first_m_per_s = problem.friction.law.parameter("V_i_m_per_s");
+      first_m_per_s > most_m_per_s)
     throw UserError(
         "{} is {:.4g} m/s, beyond the rate at which inertia limits slip, {:.4g} m/s: no slow slip "
         "comes before an event; choose a smaller one, or press harder",
@@ -225,9 +193,9 @@ void require_rate_of_events(const input::Case& config) {
         key, rate_m_per_s, load_m_per_s, speed, Key("sequence.times_s"));
 }
 
-void require_load_below_c_L(const input::Case& config) {
-  const double speed_m_per_s = LoadingPath(config).fastest_m_per_s();
-  const double c_L = solid::longitudinal_speed_m_per_s(config.material);
+void require_load_below_c_L(const Problem& problem) {
+  const double speed_m_per_s = problem.path().fastest_m_per_s();
+  const double c_L = solid::longitudinal_speed_m_per_s(problem.above().material);
   if (speed_m_per_s >= c_L)
     throw UserError("{} and {} move the load at {:.4g} m/s; it must be slower than c_L = {:.4g} m/s",
                     Key("sequence.times_s"), Key("sequence.shears_m"), speed_m_per_s, c_L);
@@ -235,11 +203,11 @@ void require_load_below_c_L(const input::Case& config) {
 
 /// Slip that strengthens with the slip rate everywhere stays slow, and no event ends it: at rates from rest
 /// to those of the load, which slow slip comes to.
-void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate) {
-  const auto& sequence = config.sequence;
+void require_end_of_slow_slip(const Problem& problem, const mesh::Mesh& plate) {
+  const auto& sequence = problem.sequence;
   if (std::isfinite(sequence.end_s) || !sequence.path.times_s.empty()) return;
-  const auto laws = laws_of(config, plate);
-  for (const double V_m_per_s : {0.0, top_speed_m_per_s(config)}) {
+  const auto laws = laws_of(problem, plate);
+  for (const double V_m_per_s : {0.0, problem.shear_speed_m_per_s}) {
     const auto weakens = [&](const auto& law) {
       const auto response = interface::state_response(law, V_m_per_s);
       return response->b > response->a;
@@ -252,67 +220,76 @@ void require_end_of_slow_slip(const input::Case& config, const mesh::Mesh& plate
       Key("sequence.end_s"), Key("friction.b"));
 }
 
-Meshes checked_meshes(const input::Case& config, bool only_interface) {
-  if (!is_prestressed(config)) require_edges_to_tilt(config);
-  require_free_sides_for_single(config);
-  Meshes meshes{only_interface ? mesh::make_interface(config.plate) : mesh::make_plate(config.plate), {}};
-  const auto& pusher = config.machine.pusher;
+Meshes checked_meshes(const Problem& problem, bool only_interface) {
+  if (!problem.is_prestressed()) require_edges_to_tilt(problem);
+  require_free_sides_for_single(problem);
+  Meshes meshes{
+      only_interface ? mesh::make_interface(problem.above().plate) : mesh::make_plate(problem.above().plate),
+      {}};
+  const auto& pusher = problem.above().machine.pusher;
   if (pusher.is_there() && !meshes.plate.is_interface() &&
       boundary::pushed_nodes(meshes.plate, pusher).empty())
     throw UserError(
         "no node lies between {} = {:g} m and {} = {:g} m, where elements are larger; choose others",
         Key("loading.pusher_from_m"), pusher.from_m, Key("loading.pusher_to_m"), pusher.to_m);
-  motion::require_rows_fit(meshes.plate, config.time);
-  if (input::has_base_body(config)) {
-    meshes.base = make_base(config, only_interface);
-    motion::require_rows_fit(*meshes.base, config.time, "base");
+  motion::require_rows_fit(meshes.plate, problem.time);
+  if (problem.has_below()) {
+    meshes.base = make_base(problem, only_interface);
+    motion::require_rows_fit(*meshes.base, problem.time, "base");
   }
-  probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
-  if (input::is_sequence(config)) require_load_below_c_L(config);
-  if (input::is_slow(config)) {
-    require_steady_friction(config, meshes.plate);
-    require_rate_of_events(config);
-    require_end_of_slow_slip(config, meshes.plate);
+  probes_of(problem, meshes.plate, meshes.base);  // refuses what lies outside
+  if (problem.is_sequence()) require_load_below_c_L(problem);
+  if (problem.is_slow()) {
+    require_steady_friction(problem, meshes.plate);
+    require_rate_of_events(problem);
+    require_end_of_slow_slip(problem, meshes.plate);
   }
-  meshes.mu_s = ratios_at_rest(config, meshes.plate);
-  if (!is_prestressed(config)) return meshes;
-  const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate));
-  starting_loads(config, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
+  meshes.mu_s = ratios_at_rest(problem, meshes.plate);
+  if (!problem.is_prestressed()) return meshes;
+  const auto state =
+      statics::prestressed(meshes.plate, prescribed_tractions(problem, mesh::interface_x_m(meshes.plate)));
+  starting_loads(problem, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
   return meshes;
 }
 
 }  // namespace
 
-Meshes check(const input::Case& config, const Processes& processes) {
-  require_possible_by_plain_scheme(config, processes);
-  require_memory_fits(config, processes);
-  return checked_meshes(config, root_has_interface_only(config, processes.size()));
+Meshes check(const Problem& problem, const Processes& processes) {
+  require_possible_by_plain_scheme(problem, processes);
+  require_memory_fits(problem, processes);
+  return checked_meshes(problem, root_has_interface_only(problem, processes.size()));
 }
 
-Meshes check_interfaces(const input::Case& config) {
-  return checked_meshes(config, true);
+Meshes check_interfaces(const Problem& problem) {
+  return checked_meshes(problem, true);
 }
 
-std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
+std::unique_ptr<motion::Stepper> new_stepper(const Problem& problem, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
+                                             const std::vector<double>& healed,
                                              const motion::Execution& execution) {
-  return std::make_unique<motion::Stepper>(GlobalBodies(config, plate, base).bodies(),
-                                           input::contact_model(config, interface_x_m(plate)), config.time,
-                                           execution);
+  return std::make_unique<motion::Stepper>(GlobalBodies(problem, plate, base).bodies(),
+                                           contact_model(problem, mesh::interface_x_m(plate), healed),
+                                           problem.time, execution);
 }
 
-std::unique_ptr<motion::TimeStepper> new_time_stepper(const input::Case& config, const mesh::Mesh& plate,
-                                                      const std::optional<mesh::Mesh>& base,
+std::unique_ptr<motion::PlainStepper> new_plain_stepper(const Problem& problem, const mesh::Mesh& plate,
+                                                        const std::optional<mesh::Mesh>& base,
+                                                        const std::vector<double>& healed) {
+  return std::make_unique<motion::PlainStepper>(GlobalBodies(problem, plate, base).bodies(),
+                                                contact_model(problem, mesh::interface_x_m(plate), healed),
+                                                problem.time);
+}
+
+std::unique_ptr<motion::TimeStepper> new_time_stepper(const Problem& problem, const InitialState& initial,
                                                       const motion::Execution& execution) {
-  if (!is_plain(config)) return new_stepper(config, plate, base, execution);
-  return std::make_unique<motion::PlainStepper>(GlobalBodies(config, plate, base).bodies(),
-                                                input::contact_model(config, interface_x_m(plate)),
-                                                config.time);
+  if (problem.is_plain()) return new_plain_stepper(problem, initial.mesh, initial.base, initial.healed);
+  return new_stepper(problem, initial.mesh, initial.base, initial.healed, execution);
 }
 
-InitialState unloaded_state(const input::Case& config, const Processes& processes) {
+InitialState unloaded_state(const Problem& problem, const Processes& processes) {
   InitialState initial;
-  auto meshes = check(config, processes);
+  auto meshes = check(problem, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   initial.n_nodes = n_nodes_of(initial.mesh) + (initial.base ? n_nodes_of(*initial.base) : 0);
@@ -324,70 +301,84 @@ InitialState unloaded_state(const input::Case& config, const Processes& processe
 
 namespace {
 
-statics::Statics statics_of(const input::Case& config, const mesh::Mesh& plate,
+statics::Statics statics_of(const Problem& problem, const mesh::Mesh& plate,
                             const std::optional<mesh::Mesh>& base_mesh, const PerNode& mu_s,
                             statics::Statics::MayContinue may_continue) {
-  const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
-  if (base_mesh) base.emplace(statics::ElasticBody{*base_mesh, base_material});
-  auto loading = config.loading;
-  loading.solver = wanted_solver(config);
-  return {{plate, config.material, config.machine},
+  if (base_mesh) base.emplace(statics::ElasticBody{*base_mesh, problem.below().material});
+  auto loading = problem.loading;
+  loading.solver = wanted_solver(problem);
+  return {{plate, problem.above().material, problem.above().machine},
           base,
           loading,
           at_all_nodes(mu_s, plate),
-          interface::static_coefficient_key(config.friction),
+          interface::static_coefficient_key(problem.friction.law),
           std::move(may_continue)};
 }
 
 }  // namespace
 
-statics::Statics statics_of(const input::Case& config, const InitialState& initial,
+statics::Statics statics_of(const Problem& problem, const InitialState& initial,
                             statics::Statics::MayContinue may_continue) {
-  return statics_of(config, initial.mesh, initial.base, ratios_at_rest(config, initial.mu_s),
+  return statics_of(problem, initial.mesh, initial.base, ratios_at_rest(problem, initial.mu_s),
                     std::move(may_continue));
 }
 
-void describe_solver(const input::Case& config, const statics::Statics& statics, InitialState& initial) {
+statics::StaticSolver wanted_solver(const Problem& problem) {
+  const auto& machine = problem.above().machine;
+  if (machine.pusher.is_there() || !machine.is_rigid() || problem.is_slow())
+    return statics::StaticSolver::direct;
+  const auto shape = [](const problem::Body& body) {
+    const auto& plate = body.plate;
+    return statics::Shape{std::round(plate.width_m / plate.element_size_m),
+                          std::round(plate.height_m / plate.element_size_m), plate.coarsenings > 0};
+  };
+  std::optional<statics::Shape> base;
+  if (problem.has_below()) base = shape(problem.below());
+  return statics::solver_for_shapes(problem.loading.solver, shape(problem.above()), base);
+}
+
+void describe_solver(const Problem& problem, const statics::Statics& statics, InitialState& initial) {
   initial.n_unknowns = statics.solver().n_unknowns();
-  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
+  initial.solver = statics::choose_solver(wanted_solver(problem), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();
 }
 
-InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
+InitialState make_initial_state(const Problem& problem, const motion::Monitor& monitor,
                                 const motion::Execution& execution, const RampBegins& ramp_begins,
                                 const Processes& processes) {
   const auto start = Clock::now();
-  auto initial = unloaded_state(config, processes);
-  const auto mu_s = ratios_at_rest(config, initial.mu_s);
-  if (is_prestressed(config)) {
+  auto initial = unloaded_state(problem, processes);
+  const auto mu_s = ratios_at_rest(problem, initial.mu_s);
+  if (problem.is_prestressed()) {
     initial.prescribed = true;
-    initial.subcritical = statics::prestressed(initial.mesh, prescribed_tractions(config, initial.mesh),
-                                               initial.base ? &*initial.base : nullptr);
+    initial.subcritical =
+        statics::prestressed(initial.mesh, prescribed_tractions(problem, mesh::interface_x_m(initial.mesh)),
+                             initial.base ? &*initial.base : nullptr);
     initial.supercritical = initial.subcritical;
     initial.critical_shear_m = nan;
     initial.wall_s = seconds_since(start);
     return initial;
   }
-  const auto statics = statics_of(config, initial, [&] { return monitor(0, 0); });
-  describe_solver(config, statics, initial);
+  const auto statics = statics_of(problem, initial, [&] { return monitor(0, 0); });
+  describe_solver(problem, statics, initial);
   const auto critical = statics.shear_to(1);
   initial.critical_shear_m = critical.shear_m;
-  if (config.loading.method == statics::LoadingMethod::direct) {
-    initial.subcritical = common_state(config, statics, critical, initial.tributary_m);
-    initial.supercritical = statics::is_sheared_by_force(config.loading)
+  if (problem.loading.method == statics::LoadingMethod::direct) {
+    initial.subcritical = common_state(problem, statics, critical, initial.tributary_m);
+    initial.supercritical = statics::is_sheared_by_force(problem.loading)
                                 ? initial.subcritical
-                                : statics.shear_to(1 + config.loading.critical_margin);
+                                : statics.shear_to(1 + problem.loading.critical_margin);
   } else {
-    auto of_ramp = config;
+    auto of_ramp = problem;
     of_ramp.time.interface_substeps = 1;
-    const auto with_ramp = new_stepper(of_ramp, initial.mesh, initial.base, execution);
+    const auto with_ramp = new_stepper(of_ramp, initial.mesh, initial.base, {}, execution);
     auto& stepper = *with_ramp;
     const auto tilted = statics.shear_by(0);
-    stepper.start(tilted, top_speed_m_per_s(config));
+    stepper.start(tilted, problem.shear_speed_m_per_s);
     motion::RampRun ramp(stepper,
-                         {tilted, config.loading, mu_s, top_speed_m_per_s(config),
-                          fastest_speed_m_per_s(config), initial.critical_shear_m},
+                         {tilted, problem.loading, mu_s, problem.shear_speed_m_per_s,
+                          fastest_speed_m_per_s(problem), initial.critical_shear_m},
                          monitor);
     if (ramp_begins) ramp_begins(stepper, ramp);
     initial.ramp = ramp.run();
@@ -395,20 +386,20 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.subcritical = initial.ramp->subcritical;
     initial.supercritical = initial.ramp->supercritical;
   }
-  if (has_forces(config))
-    initial.loads = resolved_loads(config, statics, critical, initial.subcritical, initial.tributary_m);
+  if (has_forces(problem))
+    initial.loads = resolved_loads(problem, statics, critical, initial.subcritical, initial.tributary_m);
   initial.wall_s = seconds_since(start);
   return initial;
 }
 
-std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes) {
-  if (!has_forces(config)) return {};
-  const auto statics =
-      statics_of(config, meshes.plate, meshes.base, ratios_at_rest(config, meshes.mu_s), [] { return true; });
+std::optional<LoadedState> loaded_state(const Problem& problem, const Meshes& meshes) {
+  if (!has_forces(problem)) return {};
+  const auto statics = statics_of(problem, meshes.plate, meshes.base, ratios_at_rest(problem, meshes.mu_s),
+                                  [] { return true; });
   const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
   const auto critical = statics.shear_to(1);
-  auto subcritical = common_state(config, statics, critical, tributary_m);
-  const auto loads = resolved_loads(config, statics, critical, subcritical, tributary_m);
+  auto subcritical = common_state(problem, statics, critical, tributary_m);
+  const auto loads = resolved_loads(problem, statics, critical, subcritical, tributary_m);
   return LoadedState{loads, std::move(subcritical)};
 }
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/plain_stepper.hpp"
 #include "motion/ramp.hpp"
+#include "problem/problem.hpp"
 #include "processes/processes.hpp"
 #include "run/loads.hpp"
 #include "statics/statics.hpp"
@@ -31,6 +31,8 @@ struct InitialState {
                                        ///< under a given shear force the subcritical one
   bool prescribed = false;             ///< loading.method is prestress: no statics, no critical shear
   std::vector<double> mu_s;            ///< [interface nodes] where friction varies along x, else none
+  /// By how much mu_s has grown at rest [interface nodes]; none where it does not.
+  std::vector<double> healed;
   /// States of friction, as in motion::Loads.
   std::vector<std::vector<double>> law_states;
   double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly, or behind slow slip
@@ -47,7 +49,7 @@ struct InitialState {
   /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(n_nodes, n_cells, tributary_m, subcritical, supercritical, prescribed, mu_s, law_states,
+    archive(n_nodes, n_cells, tributary_m, subcritical, supercritical, prescribed, mu_s, healed, law_states,
             critical_shear_m, n_unknowns, solver, solver_bytes, wall_s, ramp, loads);
   }
 };
@@ -63,30 +65,32 @@ struct Meshes {
 /// meshes are those of the interfaces alone where root_has_interface_only says so.
 /// @param processes  the ranks that share the run
 /// @throws UserError
-Meshes check(const input::Case& config, const Processes& processes = one_process());
+Meshes check(const Problem& problem, const Processes& processes = one_process());
 
 /// Checks the interfaces alone, whatever the memory.
-Meshes check_interfaces(const input::Case& config);
+Meshes check_interfaces(const Problem& problem);
 
 /// Numbers of a body of which the interface may be all that is held.
 std::int64_t n_nodes_of(const mesh::Mesh& mesh);
 std::int64_t n_cells_of(const mesh::Mesh& mesh);
 
 /// The bodies of a case without any load, after check.
-InitialState unloaded_state(const input::Case& config, const Processes& processes = one_process());
+InitialState unloaded_state(const Problem& problem, const Processes& processes = one_process());
 /// Statics of a state's bodies, which have to stay where they are.
 /// @throws as statics::Statics
-statics::Statics statics_of(const input::Case& config, const InitialState& initial,
+statics::Statics statics_of(const Problem& problem, const InitialState& initial,
                             statics::Statics::MayContinue may_continue);
+/// The solver that a problem's loading and shape ask for.
+statics::StaticSolver wanted_solver(const Problem& problem);
 /// Notes in a state by which solver it is found.
-void describe_solver(const input::Case& config, const statics::Statics& statics, InitialState& initial);
+void describe_solver(const Problem& problem, const statics::Statics& statics, InitialState& initial);
 
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 
 /// @param processes  as above
 /// @throws UserError, BlowUp, Interrupted as its parts do.
-InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
+InitialState make_initial_state(const Problem& problem, const motion::Monitor& monitor,
                                 const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
                                 const Processes& processes = one_process());
 
@@ -96,23 +100,23 @@ struct LoadedState {
 };
 /// What the forces of a case come to, by its statics; under loading.method = ramp as if it was direct. None
 /// where it gives none.
-std::optional<LoadedState> loaded_state(const input::Case& config, const Meshes& meshes);
-
-/// A text that is the same for two cases if and only if they share their initial state.
-std::string initial_state_key(const input::Case& config);
+std::optional<LoadedState> loaded_state(const Problem& problem, const Meshes& meshes);
 
 /// Where a case's probes lie in its bodies, of which the interfaces may be all that is held.
 /// @throws UserError where one lies outside
-std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
+std::vector<motion::Probe> probes_of(const Problem& problem, const mesh::Mesh& plate,
                                      const std::optional<mesh::Mesh>& base);
 
 /// The bodies without their motion.
-std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
+std::unique_ptr<motion::Stepper> new_stepper(const Problem& problem, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
+                                             const std::vector<double>& healed = {},
                                              const motion::Execution& execution = {});
-/// A new stepper, fast or by the plain scheme, as the case says.
-std::unique_ptr<motion::TimeStepper> new_time_stepper(const input::Case& config, const mesh::Mesh& plate,
-                                                      const std::optional<mesh::Mesh>& base,
+std::unique_ptr<motion::PlainStepper> new_plain_stepper(const Problem& problem, const mesh::Mesh& plate,
+                                                        const std::optional<mesh::Mesh>& base,
+                                                        const std::vector<double>& healed = {});
+/// A new stepper, fast or by the plain scheme, as the problem says.
+std::unique_ptr<motion::TimeStepper> new_time_stepper(const Problem& problem, const InitialState& initial,
                                                       const motion::Execution& execution = {});
 
 }  // namespace slipfront::run

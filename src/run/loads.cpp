@@ -5,14 +5,14 @@
 
 namespace slipfront::run {
 
-bool has_forces(const input::Case& config) {
-  const auto& loading = config.loading;
+bool has_forces(const Problem& problem) {
+  const auto& loading = problem.loading;
   return loading.normal_force_N_per_m || loading.mean_pressure_Pa || statics::is_sheared_by_force(loading);
 }
 
-statics::Equilibrium common_state(const input::Case& config, const statics::Statics& statics,
+statics::Equilibrium common_state(const Problem& problem, const statics::Statics& statics,
                                   const statics::Equilibrium& critical, std::span<const double> tributary_m) {
-  const auto& loading = config.loading;
+  const auto& loading = problem.loading;
   if (!statics::is_sheared_by_force(loading)) return statics.shear_to(1 - loading.critical_margin);
   constexpr double rounding = 1e-9;
   const double critical_N_per_m = statics::contact_force(critical, tributary_m).shear_N_per_m;
@@ -28,12 +28,12 @@ statics::Equilibrium common_state(const input::Case& config, const statics::Stat
   return statics.shear_to_force(wanted_N_per_m);
 }
 
-ResolvedLoads resolved_loads(const input::Case& config, const statics::Statics& statics,
+ResolvedLoads resolved_loads(const Problem& problem, const statics::Statics& statics,
                              const statics::Equilibrium& critical, const statics::Equilibrium& subcritical,
                              std::span<const double> tributary_m) {
   const double normal_N_per_m = statics::contact_force(statics.tilted(), tributary_m).normal_N_per_m;
   return {normal_N_per_m,
-          normal_N_per_m / config.plate.width_m,
+          normal_N_per_m / problem.width_m(),
           statics.loading().tilt_left_m,
           statics.loading().tilt_right_m,
           statics::contact_force(subcritical, tributary_m).shear_N_per_m,

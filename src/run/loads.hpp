@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 #include "statics/statics.hpp"
 
 // Loads that a case gives as forces of the interface, per unit thickness.
@@ -28,18 +28,18 @@ struct ResolvedLoads {
 };
 
 /// Whether a case gives any load as a force.
-bool has_forces(const input::Case& config);
+bool has_forces(const Problem& problem);
 
 /// The state before triggered events, by static equilibria: at the margin below the critical shear, or under
 /// the shear force that the case gives.
 /// @param critical  statics.shear_to(1)
 /// @throws UserError where no shear gives that, or the force is beyond the critical one
-statics::Equilibrium common_state(const input::Case& config, const statics::Statics& statics,
+statics::Equilibrium common_state(const Problem& problem, const statics::Statics& statics,
                                   const statics::Equilibrium& critical, std::span<const double> tributary_m);
 
 /// @param subcritical       state before triggered events
 /// @param tributary_m  [interface nodes]
-ResolvedLoads resolved_loads(const input::Case& config, const statics::Statics& statics,
+ResolvedLoads resolved_loads(const Problem& problem, const statics::Statics& statics,
                              const statics::Equilibrium& critical, const statics::Equilibrium& subcritical,
                              std::span<const double> tributary_m);
 

@@ -9,7 +9,6 @@
 #include "base/error.hpp"
 #include "mesh/plate.hpp"
 #include "motion/level.hpp"
-#include "run/choices.hpp"
 #include "stability/verdict.hpp"
 
 namespace slipfront::run {
@@ -20,14 +19,14 @@ constexpr double max_columns = 1e6;
 constexpr int most_tries = 64;  // each makes an interface
 
 /// Elements in a process zone of this length.
-double needed_elements(const input::Case& config, const RuptureOutlook& rupture) {
-  const auto bodies = bodies_of(config);
+double needed_elements(const Problem& problem, const RuptureOutlook& rupture) {
+  const auto bodies = materials_of(problem);
   double n = elements_for_peaks;
   if (may_pass_c_S(bodies, rupture.of_nodes.S.median)) n = elements_for_transition;
   // Damping of waves of the mesh, beta_R = a h/c_S, stays harmless to the zone Z, beta_R c_L <= b Z.
-  const double h_m = config.plate.element_size_m;
+  const double h_m = problem.element_size_m();
   const double damping_s =
-      stability::damping_of_grid_waves_s(bodies, config.friction, config.regularisation, h_m);
+      stability::damping_of_grid_waves_s(bodies, problem.friction.law, problem.friction.regularisation, h_m);
   return std::max(n, damping_s * stability::slower_c_L_m_per_s(bodies) / (harmless_damping * h_m));
 }
 
@@ -36,14 +35,14 @@ bool is_whole(double count) {
 }
 
 /// Nodes of the plate and a base; none where the elements, or the rows that are sub-cycled, do not fit them.
-std::optional<std::int64_t> n_nodes(const input::Case& config) {
+std::optional<std::int64_t> n_nodes(const Problem& problem) {
   try {
-    const auto count = [&](const mesh::Mesh& body) {
-      motion::require_rows_fit(body, config.time);
-      return n_nodes_of(body);
-    };
-    auto n = count(mesh::make_interface(config.plate));
-    if (input::has_base_body(config)) n += count(mesh::make_interface(input::base_plate(config), "base"));
+    std::int64_t n = 0;
+    for (const auto& body : problem.bodies) {
+      const auto interface = mesh::make_interface(body.plate);
+      motion::require_rows_fit(interface, problem.time);
+      n += n_nodes_of(interface);
+    }
     return n;
   } catch (const UserError&) {
     return {};
@@ -60,24 +59,23 @@ void coarsen(mesh::Plate& plate, int coarsenings) {
 
 }  // namespace
 
-std::optional<MeshChoice> cheapest_mesh(const input::Case& config, const RuptureOutlook& rupture) {
-  if (!rupture.of_nodes.process_zone_m || config.plate.corner == mesh::Corner::fillet) return {};
-  const double zone_m = *rupture.of_nodes.process_zone_m, width_m = config.plate.width_m;
-  const double least = needed_elements(config, rupture) * width_m / zone_m;
-  const int spare = config.plate.sides == mesh::Sides::periodic ? 1 : 0;
+std::optional<MeshChoice> cheapest_mesh(const Problem& problem, const RuptureOutlook& rupture) {
+  if (!rupture.of_nodes.process_zone_m || problem.above().plate.corner == mesh::Corner::fillet) return {};
+  const double zone_m = *rupture.of_nodes.process_zone_m, width_m = problem.width_m();
+  const double least = needed_elements(problem, rupture) * width_m / zone_m;
+  const int spare = problem.above().plate.sides == mesh::Sides::periodic ? 1 : 0;
   for (int coarsenings = most_coarsenings; coarsenings >= 0; --coarsenings) {
     const double multiple = coarsenings == 0 ? 1 : 1 << (coarsenings + spare);
-    auto choice = config;
-    coarsen(choice.plate, coarsenings);
-    coarsen(choice.base.plate, coarsenings);
+    auto choice = problem;
+    for (auto& body : choice.bodies) coarsen(body.plate, coarsenings);
     int tries = 0;
     for (double columns = multiple * std::ceil(least / multiple * (1 - 1e-9));
          columns <= std::min(max_columns, 2 * least + 100); columns += multiple) {
-      choice.plate.element_size_m = width_m / columns;
-      if (!is_whole(config.plate.height_m / choice.plate.element_size_m)) continue;
+      const double h_m = width_m / columns;
+      for (auto& body : choice.bodies) body.plate.element_size_m = h_m;
+      if (!is_whole(problem.above().plate.height_m / h_m)) continue;
       if (++tries > most_tries) break;
-      if (const auto n = n_nodes(choice))
-        return MeshChoice{choice.plate.element_size_m, coarsenings, zone_m / choice.plate.element_size_m, *n};
+      if (const auto n = n_nodes(choice)) return MeshChoice{h_m, coarsenings, zone_m / h_m, *n};
     }
   }
   return {};

@@ -20,6 +20,6 @@ struct MeshChoice {
 /// rest; 16 where S says that fronts may pass c_S between equal bodies; as many as let both bounds of damping
 /// hold where friction follows the pressure at once between others. Two coarsenings, or as many as fit.
 /// Empty where there is no process zone, and where no such mesh fits the plate.
-std::optional<MeshChoice> cheapest_mesh(const input::Case& config, const RuptureOutlook& rupture);
+std::optional<MeshChoice> cheapest_mesh(const Problem& problem, const RuptureOutlook& rupture);
 
 }  // namespace slipfront::run

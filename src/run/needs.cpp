@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "input/pressure.hpp"
 #include "interface/friction.hpp"
 #include "mesh/plate.hpp"
 #include "motion/every.hpp"
@@ -17,8 +16,7 @@
 #include "record/record.hpp"
 #include "record/sequence.hpp"
 #include "results/snapshots.hpp"
-#include "run/choices.hpp"
-#include "run/loading_path.hpp"
+#include "run/initial_state.hpp"
 #include "run/snapshot_plan.hpp"
 #include "solid/operator.hpp"
 #include "stability/rupture.hpp"
@@ -99,26 +97,28 @@ mesh::Mesh coarse_mesh(mesh::Plate plate) {
 
 /// Shear at which t/p inside reaches mu_s: of the statics of a coarse mesh, or where there are none, or a
 /// base, of uniform compression and shear, which is up to half too much.
-double critical_shear_m(const input::Case& config) {
-  const double mu_s = interface::static_coefficient(config.friction);
-  double compliance_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material);
+double critical_shear_m(const Problem& problem) {
+  const double mu_s = interface::static_coefficient(problem.friction.law);
+  double compliance_m_per_Pa =
+      problem.above().plate.height_m / solid::shear_modulus_Pa(problem.above().material);
   try {
-    if (!input::has_base_body(config))
-      return statics::Statics(coarse_mesh(config.plate), config.material, config.loading, mu_s)
+    if (!problem.has_below())
+      return statics::Statics(coarse_mesh(problem.above().plate), problem.above().material, problem.loading,
+                              mu_s)
           .shear_to(1)
           .shear_m;
-    compliance_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(config.base.material);
+    compliance_m_per_Pa += problem.below().plate.height_m / solid::shear_modulus_Pa(problem.below().material);
   } catch (const UserError&) {  // nothing coarse fits, or its edges give way first
   }
-  return mu_s * input::nominal_pressure_Pa(config) * compliance_m_per_Pa;
+  return mu_s * nominal_pressure_Pa(problem) * compliance_m_per_Pa;
 }
 
 double rows_of(double end_s, double interval_s, double step_s) {
   return std::floor(end_s / std::max(interval_s, step_s)) + 1;
 }
 
-double record_bytes(const input::Case& config, double n_interface) {
-  const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
+double record_bytes(const Problem& problem, double n_interface) {
+  const double halo = std::ceil(problem.fronts.l_star_m / problem.element_size_m()) + 1;
   return n_interface * (changes * (of_change + of_node_around * (2 * halo + 1)) + of_tip_slip);
 }
 
@@ -130,14 +130,14 @@ struct Shares {
   bool has_root = false;      ///< of several
 };
 
-Shares shares_of(const input::Case& config, const Size& size, const Holder& holder) {
+Shares shares_of(const Problem& problem, const Size& size, const Holder& holder) {
   Shares s;
   s.n_moving = size.n_nodes;
   if (holder.n_processes == 1) return s;
   s.of_all = static_cast<double>(holder.n_here) / holder.n_processes;
-  const double halo_columns = 2.0 * (config.time.interface_substeps + 2);
+  const double halo_columns = 2.0 * (problem.time.interface_substeps + 2);
   s.n_moving *= s.of_all + std::min(1.0, halo_columns / size.n_interface) * holder.n_here;
-  s.by_interface = root_has_interface_only(config, holder.n_processes);
+  s.by_interface = root_has_interface_only(problem, holder.n_processes);
   s.has_root = holder.has_root;
   return s;
 }
@@ -146,44 +146,44 @@ double bytes_of_node(double of_all_nodes) {
   return of_all_nodes < solid::many_nodes ? in_motion_of_few : in_motion;
 }
 
-double motion_bytes_of(const input::Case& config, const Size& size, const Shares& s) {
-  double bytes = s.n_moving * (is_plain(config) ? in_plain_motion : bytes_of_node(size.n_nodes));
+double motion_bytes_of(const Problem& problem, const Size& size, const Shares& s) {
+  double bytes = s.n_moving * (problem.is_plain() ? in_plain_motion : bytes_of_node(size.n_nodes));
   if (s.by_interface) bytes -= state_before * s.n_moving;  // there is none
   if (s.has_root && !s.by_interface) bytes += size.n_nodes * (mesh_of_root + state_before);
-  const auto& plate = config.plate;
+  const auto& plate = problem.above().plate;
   if (s.has_root && s.by_interface && plate.corner == mesh::Corner::relief)
     bytes += 2 * in_relief * plate.relief_length_m * plate.relief_depth_m / std::pow(plate.element_size_m, 2);
   return bytes;
 }
 
-double statics_bytes_of(const input::Case& config, const Size& size, const Holder& holder) {
-  if (is_prestressed(config) || !holder.has_root) return 0;
+double statics_bytes_of(const Problem& problem, const Size& size, const Holder& holder) {
+  if (problem.is_prestressed() || !holder.has_root) return 0;
   const double n = 2 * size.n_nodes, n_base = 2 * size.n_base_nodes;
-  const auto solver = statics::choose_solver(wanted_solver(config), n);
+  const auto solver = statics::choose_solver(wanted_solver(problem), n);
   if (solver != statics::StaticSolver::direct) return statics_bytes(solver, n, size.n_interface);
   double bytes = statics_bytes(solver, n - n_base, size.n_interface);
-  if (config.loading.top_during_tilt == statics::TopEdge::free) bytes *= 2;  // with a separate factor
+  if (problem.loading.top_during_tilt == statics::TopEdge::free) bytes *= 2;  // with a separate factor
   return bytes + (n_base > 0 ? statics_bytes(solver, n_base, size.n_interface) : 0);
 }
 
 /// @param energy_rows  in memory until the end
-Budget memory(const input::Case& config, const Size& size, const Holder& holder, double energy_rows) {
-  const auto shares = shares_of(config, size, holder);
+Budget memory(const Problem& problem, const Size& size, const Holder& holder, double energy_rows) {
+  const auto shares = shares_of(problem, size, holder);
   const bool is_direct =
-      statics::choose_solver(wanted_solver(config), 2 * size.n_nodes) == statics::StaticSolver::direct;
-  const BudgetItem statics = {"the statics", statics_bytes_of(config, size, holder),
+      statics::choose_solver(wanted_solver(problem), 2 * size.n_nodes) == statics::StaticSolver::direct;
+  const BudgetItem statics = {"the statics", statics_bytes_of(problem, size, holder),
                               is_direct
                                   ? Message("{} = iterative or {}", Key("loading.solver"), larger_elements())
                                   : larger_elements()};
-  const bool is_ramp = config.loading.method == statics::LoadingMethod::ramp;
+  const bool is_ramp = problem.loading.method == statics::LoadingMethod::ramp;
   const double copies = 2;  // of the record, one in the order of time
   // Each of several ranks observes the whole interface beside its own part.
   const double of_ranks = shares.of_all + (holder.n_processes > 1 ? holder.n_here : 0);
   const double interface =
-      of_ranks * (of_interface * size.n_interface + copies * record_bytes(config, size.n_interface));
+      of_ranks * (of_interface * size.n_interface + copies * record_bytes(problem, size.n_interface));
   Budget event = {
       {fmt::format("the motion of {:.4g} nodes", size.n_nodes),
-       motion_bytes_of(config, size, shares) + (is_ramp ? in_ramp * size.n_nodes : 0), larger_elements()},
+       motion_bytes_of(problem, size, shares) + (is_ramp ? in_ramp * size.n_nodes : 0), larger_elements()},
       {"the interface and the record of its slip", interface, larger_elements()},
       {"the rows of energies", holder.n_here * energy_rows * sizeof(record::Energies),
        Message("a larger {}", Key("output.energy_interval_s"))}};
@@ -195,22 +195,23 @@ Budget memory(const input::Case& config, const Size& size, const Holder& holder,
 
 /// Steps of slow slip: as long as the direct effect, a p/V, allows against the stiffness of the shortest
 /// wave, so that they follow from the slip, and those in which rates and states change.
-double slow_steps_of(const input::Case& config) {
+double slow_steps_of(const Problem& problem) {
   constexpr double of_pair = 2.5;     // the stable step of the orders 3 and 2, times the fastest decay
   constexpr double of_changes = 2e3;  // of an event
-  const LoadingPath path(config);
-  double compliance_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material) +
-                               config.plate.width_m / config.machine.shear_stiffness_Pa;
-  if (input::has_base_body(config))
-    compliance_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(input::base_material(config));
-  const double p_Pa = input::nominal_pressure_Pa(config);
-  const double slip_m = std::isfinite(path.end_s())
-                            ? path.shear_m(path.end_s())
-                            : interface::static_coefficient(config.friction) * p_Pa * compliance_m_per_Pa;
+  const auto path = problem.path();
+  double compliance_m_per_Pa =
+      problem.above().plate.height_m / solid::shear_modulus_Pa(problem.above().material) +
+      problem.width_m() / problem.above().machine.shear_stiffness_Pa;
+  if (problem.has_below())
+    compliance_m_per_Pa += problem.below().plate.height_m / solid::shear_modulus_Pa(problem.below().material);
+  const double p_Pa = nominal_pressure_Pa(problem);
+  const double slip_m = std::isfinite(path.end_s()) ? path.shear_m(path.end_s())
+                                                    : interface::static_coefficient(problem.friction.law) *
+                                                          p_Pa * compliance_m_per_Pa;
   // Stiffness against waves of two elements.
   const double stiffness_Pa_per_m =
-      0.5 * std::numbers::pi * stability::modulus_Pa(bodies_of(config)) / config.plate.element_size_m;
-  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * config.friction.parameter("a") * p_Pa);
+      0.5 * std::numbers::pi * stability::modulus_Pa(materials_of(problem)) / problem.element_size_m();
+  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * problem.friction.law.parameter("a") * p_Pa);
 }
 
 /// The existing folder in which `folder` is or will be made.
@@ -230,11 +231,17 @@ void require_disk(const Needs& needs, const std::filesystem::path& folder) {
                fmt::format("{} has {:.3g} GB free", folder.string(), available * 1e-9), " or another folder");
 }
 
-/// All of a case's size but for the step.
-Size estimated_mesh_size(const input::Case& config) {
-  const auto unknowns = approximate_unknowns(config);
-  return {0.5 * (unknowns.of_plate + unknowns.of_base), 0.5 * unknowns.of_base,
-          config.plate.width_m / config.plate.element_size_m + 1};
+/// Nodes of a body, from its measures alone.
+double approximate_nodes(const mesh::Plate& plate) {
+  double nodes = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
+  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
+    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
+    nodes += (plate.width_m / h + 1) * (of_block_m / h + 1);
+    rest_m -= of_block_m;
+    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
+    h *= 2;
+  }
+  return nodes;
 }
 
 /// The ranks of this machine, rank 0 among them.
@@ -248,35 +255,39 @@ void require_memory_for(const Budget& memory, const Size& size, const Processes&
 }
 
 /// Nodes of a body that is held as a whole are numbered by one process.
-void require_numbers(const input::Case& config, int n_processes) {
-  if (!input::can_be_held_in_parts(config) || root_has_interface_only(config, n_processes)) return;
+void require_numbers(const Problem& problem, int n_processes) {
+  if (!can_be_held_in_parts(problem) || root_has_interface_only(problem, n_processes)) return;
   constexpr double max_nodes = std::numeric_limits<mesh::Node>::max();
-  const double h = config.plate.element_size_m;
+  const double h = problem.element_size_m();
   const double height_m =
-      std::max(config.plate.height_m, input::has_base_body(config) ? config.base.plate.height_m : 0);
-  const double n_nodes = (config.plate.width_m / h + 1) * (height_m / h + 1);
+      std::max(problem.above().plate.height_m, problem.has_below() ? problem.below().plate.height_m : 0);
+  const double n_nodes = (problem.width_m() / h + 1) * (height_m / h + 1);
   if (n_nodes > max_nodes)
     throw UserError("{} is {} m; that makes {:.3g} nodes, more than the {:.3g} that one rank can number{}",
                     Key("plate.element_size_m"), h, n_nodes, max_nodes,
-                    root_has_interface_only(config, 2) ? "; use more ranks, or choose a larger one"
-                                                       : "; choose a larger one")
+                    root_has_interface_only(problem, 2) ? "; use more ranks, or choose a larger one"
+                                                        : "; choose a larger one")
         .about("plate.width_m", "plate.height_m");
 }
 
 }  // namespace
 
-Size estimated_size(const input::Case& config) {
-  Size size = estimated_mesh_size(config);
-  const double h = config.plate.element_size_m;
-  const auto stable_step_s = [&](const solid::Material& material) {
-    // Corners and coarser blocks change it little, or lower it.
-    return solid::stable_step_s(solid::frequency_of_squares_rad_per_s(h, material),
-                                material.stiffness_damping_s);
-  };
-  size.step_s = config.time.step_factor * stable_step_s(config.material);
-  if (input::has_base_body(config))
-    size.step_s =
-        std::min(size.step_s, config.time.step_factor * stable_step_s(input::base_material(config)));
+Size mesh_size(const Problem& problem) {
+  Size size;
+  for (const auto& body : problem.bodies) size.n_nodes += approximate_nodes(body.plate);
+  if (problem.has_below()) size.n_base_nodes = approximate_nodes(problem.below().plate);
+  size.n_interface = problem.width_m() / problem.element_size_m() + 1;
+  return size;
+}
+
+Size estimated_size(const Problem& problem) {
+  Size size = mesh_size(problem);
+  double stable_s = infinity;  // corners and coarser blocks change it little, or lower it
+  for (const auto& [plate, material, machine] : problem.bodies)
+    stable_s = std::min(
+        stable_s, solid::stable_step_s(solid::frequency_of_squares_rad_per_s(plate.element_size_m, material),
+                                       material.stiffness_damping_s));
+  size.step_s = problem.time.step_factor * stable_s;
   return size;
 }
 
@@ -295,29 +306,30 @@ double statics_s(statics::StaticSolver solver, double n) {
   return n * (n < many_for_caches ? s_by_multigrid : s_by_multigrid_of_many);
 }
 
-Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
-  const auto& output = config.output;
-  const double end_s = config.time.end_s;
+Needs needs(const Problem& problem, const Size& size, const Holder& holder) {
+  const auto& output = problem.output;
+  const double end_s = problem.time.end_s;
   Needs n;
   n.steps = countable(motion::steps_to(end_s, size.step_s), Message("{} = {:g}", Key("time.end_s"), end_s),
                       "an earlier end");
-  if (config.loading.method == statics::LoadingMethod::ramp)
-    n.ramp_steps = countable(std::ceil(critical_shear_m(config) / (top_speed_m_per_s(config) * size.step_s)),
-                             Message("the ramp with {} = {:g}", Key("loading.shear_speed_over_c_L"),
-                                     config.loading.shear_speed_over_c_L),
-                             Message("a higher speed, or {} = direct", Key("loading.method")));
+  if (problem.loading.method == statics::LoadingMethod::ramp)
+    n.ramp_steps =
+        countable(std::ceil(critical_shear_m(problem) / (problem.shear_speed_m_per_s * size.step_s)),
+                  Message("the ramp with {} = {:g}", Key("loading.shear_speed_over_c_L"),
+                          problem.loading.shear_speed_over_c_L),
+                  Message("a higher speed, or {} = direct", Key("loading.method")));
   n.history_rows = rows_of(end_s, output.history_interval_s, size.step_s);
-  n.snapshots = static_cast<double>(snapshot_plan(config, size.step_s).times_s.size());
+  n.snapshots = static_cast<double>(snapshot_plan(problem, size.step_s).times_s.size());
   const double energy_rows = rows_of(end_s, output.energy_interval_s, size.step_s) + 1;
 
-  n.memory = memory(config, size, holder, energy_rows);
-  n.statics_bytes = statics_bytes_of(config, size, holder);
+  n.memory = memory(problem, size, holder, energy_rows);
+  n.statics_bytes = statics_bytes_of(problem, size, holder);
 
   n.history_bytes = n.history_rows * number *
                     static_cast<double>(record::history_row_values(static_cast<std::size_t>(size.n_interface),
-                                                                   config.friction.states().size()));
-  if (input::is_slow(config)) {
-    n.slow_steps = slow_steps_of(config);
+                                                                   problem.friction.law.states().size()));
+  if (problem.is_slow()) {
+    n.slow_steps = slow_steps_of(problem);
     // With those in which rates and states change then.
     const double most_rows = 2.0 * record::all_slow_rows;
     n.slow_bytes =
@@ -326,10 +338,10 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   const double of_stress = output.snapshot_stress ? results::tensor_values_per_cell * number : 0;
   if (n.snapshots > 0)
     n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (in_snapshot + of_stress));
-  const double in_one = is_plain(config) ? in_plain_checkpoint : in_checkpoint;
-  n.checkpoint_bytes = checkpoints * (in_one * size.n_nodes + record_bytes(config, size.n_interface));
-  if (const auto n_probes = config.probes.x_m.size(); n_probes > 0)
-    n.probe_bytes = rows_of(end_s, config.probes.interval_s, size.step_s) * number *
+  const double in_one = problem.is_plain() ? in_plain_checkpoint : in_checkpoint;
+  n.checkpoint_bytes = checkpoints * (in_one * size.n_nodes + record_bytes(problem, size.n_interface));
+  if (const auto n_probes = problem.probes.size(); n_probes > 0)
+    n.probe_bytes = rows_of(end_s, problem.probe_interval_s, size.step_s) * number *
                     static_cast<double>(record::probe_row_values(n_probes));
   n.energy_bytes = energy_rows * in_text * sizeof(record::Energies) / number;
   return n;
@@ -347,16 +359,16 @@ Budget Needs::disk() const {
           {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
 }
 
-void require_memory_fits(const input::Case& config, const Processes& processes) {
-  require_numbers(config, processes.size());
-  const auto size = estimated_mesh_size(config);
-  require_memory_for(memory(config, size, this_machine(processes), 0), size, processes);
+void require_memory_fits(const Problem& problem, const Processes& processes) {
+  require_numbers(problem, processes.size());
+  const auto size = mesh_size(problem);
+  require_memory_for(memory(problem, size, this_machine(processes), 0), size, processes);
 }
 
-void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes& processes) {
-  require_numbers(config, processes.size());
-  const auto size = estimated_size(config);
-  const Needs n = needs(config, size, this_machine(processes));
+void require_fit(const Problem& problem, const std::filesystem::path& folder, const Processes& processes) {
+  require_numbers(problem, processes.size());
+  const auto size = estimated_size(problem);
+  const Needs n = needs(problem, size, this_machine(processes));
   require_memory_for(n.memory, size, processes);
   require_disk(n, folder);
 }

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "base/budget.hpp"
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 #include "processes/processes.hpp"
 #include "statics/settings.hpp"
 
@@ -20,9 +20,11 @@ struct Size {
   double step_s = 0;
 };
 
+/// Size but for the step, from the bodies' measures alone: for refusals before anything is built.
+Size mesh_size(const Problem& problem);
 /// Size from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
 /// which is shorter, and of a graded plate, which may be longer.
-Size estimated_size(const input::Case& config);
+Size estimated_size(const Problem& problem);
 
 /// Whose memory it is: of one process, or of some of several ranks.
 struct Holder {
@@ -48,7 +50,7 @@ struct Needs {
 };
 
 /// @throws UserError where more steps are asked for than any machine takes.
-Needs needs(const input::Case& config, const Size& size, const Holder& holder = {});
+Needs needs(const Problem& problem, const Size& size, const Holder& holder = {});
 
 /// Needs of the statics of a plate without a base by one process.
 double statics_bytes(statics::StaticSolver solver, double n_unknowns, double n_interface);
@@ -61,13 +63,13 @@ double motion_bytes(double n_nodes);
 /// is built; what grows with its steps is left out.
 /// @param processes  the ranks that share the run
 /// @throws UserError naming what to change.
-void require_memory_fits(const input::Case& config, const Processes& processes = one_process());
+void require_memory_fits(const Problem& problem, const Processes& processes = one_process());
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
 /// @param processes  as above
 /// @throws UserError naming what to change.
-void require_fit(const input::Case& config, const std::filesystem::path& folder,
+void require_fit(const Problem& problem, const std::filesystem::path& folder,
                  const Processes& processes = one_process());
 
 }  // namespace slipfront::run

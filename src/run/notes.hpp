@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 #include "run/outlook.hpp"
 
 namespace slipfront::run {
@@ -13,8 +13,7 @@ namespace slipfront::run {
 /// What is allowed in a case but is hardly meant, decides physics unasked, or keeps it from a rupture, a line
 /// each.
 /// @param step_s  of the run, or as estimated_size gives it
-std::vector<std::string> notes_of_case(const input::Case& config, const RuptureOutlook& rupture,
-                                       double step_s);
+std::vector<std::string> notes_of_case(const Problem& problem, const RuptureOutlook& rupture, double step_s);
 
 /// Why a sequence under a law with a state, whose run needs none, has no static state to predict from.
 std::string no_static_state(const UserError& error);

@@ -9,10 +9,8 @@
 #include <utility>
 
 #include "base/numbers.hpp"
-#include "input/friction_along_x.hpp"
-#include "input/pressure.hpp"
 #include "motion/trigger_zone.hpp"
-#include "run/choices.hpp"
+#include "problem/contact.hpp"
 #include "stability/verdict.hpp"
 #include "statics/prestress.hpp"
 
@@ -50,15 +48,16 @@ struct Inside {
   std::int64_t size() const { return std::ssize(placed); }
 };
 
-Inside nodes_inside(const input::Case& config, const statics::Equilibrium& state) {
+Inside nodes_inside(const Problem& problem, const statics::Equilibrium& state,
+                    const std::vector<double>& healed) {
   const auto& s = state.tractions;
-  const auto laws = input::friction_at(config, s.x_m);
+  const auto laws = friction_at(problem, s.x_m, healed);
   double load_Pa = 0;
   for (const double t : s.t_s_Pa) load_Pa += t;
   Inside inside;
   inside.direction = load_Pa < 0 ? -1 : 1;
   for (std::size_t k = 0; k < s.x_m.size(); ++k) {
-    const auto& law = laws.empty() ? config.friction : laws[k];
+    const auto& law = laws.empty() ? problem.friction.law : laws[k];
     if (!state.is_inside(s.x_m[k]) || !(s.p_s_Pa[k] > 0)) continue;
     inside.placed.push_back({s.x_m[k], node_before(law, inside.direction * s.t_s_Pa[k], s.p_s_Pa[k])});
     inside.has_cohesion = inside.has_cohesion || law.cohesion_Pa() > 0;
@@ -66,20 +65,20 @@ Inside nodes_inside(const input::Case& config, const statics::Equilibrium& state
   return inside;
 }
 
-std::optional<double> trigger_length_m(const input::Case& config) {
-  const auto& n = config.nucleation;
-  if (interface::is_at_edge(config.event)) return config.trigger.zone_m;
-  if (config.event == EventKind::nucleation) return n.length_m();
+std::optional<double> trigger_length_m(const Problem& problem) {
+  const auto& n = problem.start.nucleation;
+  if (interface::is_at_edge(problem.start.kind)) return problem.start.trigger.zone_m;
+  if (problem.start.kind == EventKind::nucleation) return n.length_m();
   return {};
 }
 
 /// The largest share of the strength that the patch's overstress brings t to.
-double overstressed_share(const input::Case& config, const Inside& inside) {
-  const double period_m = config.plate.sides == mesh::Sides::periodic ? config.plate.width_m : 0;
+double overstressed_share(const Problem& problem, const Inside& inside) {
+  const double period_m = problem.above().plate.sides == mesh::Sides::periodic ? problem.width_m() : 0;
   double most = 0;
   for (const auto& [x_m, node] : inside.placed) {
-    const double added_Pa = inside.direction * config.nucleation.overstress_Pa *
-                            interface::nucleation_profile(config.nucleation, x_m, period_m);
+    const double added_Pa = inside.direction * problem.start.nucleation.overstress_Pa *
+                            interface::nucleation_profile(problem.start.nucleation, x_m, period_m);
     most = std::max(most, std::abs(node.t_Pa + added_Pa) / node.strength_Pa);
   }
   return most;
@@ -93,10 +92,10 @@ std::int64_t n_beyond_strength(const Inside& inside) {
 }
 
 /// Empty, or that growing tractions come to the strength of no node before the end.
-std::string doubt_of_growing_loads(const input::Case& config, const Inside& inside) {
-  const double t_rate = inside.direction * config.prestress.t_rate_Pa_per_s;
-  const double p_rate = config.prestress.p_rate_Pa_per_s;
-  const bool follows_p = interface::follows_pressure(config.regularisation);
+std::string doubt_of_growing_loads(const Problem& problem, const Inside& inside) {
+  const double t_rate = inside.direction * problem.prestress->t_rate_Pa_per_s;
+  const double p_rate = problem.prestress->p_rate_Pa_per_s;
+  const bool follows_p = interface::follows_pressure(problem.friction.regularisation);
   double first_s = infinity;
   for (const auto& [x_m, node] : inside.placed) {
     const double strength_rate = follows_p ? node.strength_Pa / node.p_Pa * p_rate : 0;
@@ -106,17 +105,18 @@ std::string doubt_of_growing_loads(const input::Case& config, const Inside& insi
         first_s = std::min(first_s, (node.strength_Pa - direction * node.t_Pa) / nearer_per_s);
     }
   }
-  if (first_s <= config.time.end_s) return {};
+  if (first_s <= problem.time.end_s) return {};
   return std::isfinite(first_s) ? fmt::format(
                                       "growing tractions come to the strength at {:.3g} s, after "
                                       "time.end_s = {:g} s",
-                                      first_s, config.time.end_s)
+                                      first_s, problem.time.end_s)
                                 : "tractions grow away from the strength at all nodes inside";
 }
 
 /// Empty, or why an overstress begins nothing, or nothing that the load drives on.
-std::string doubt_of_overstress(const input::Case& config, const Inside& inside) {
-  const double overstress_Pa = config.nucleation.overstress_Pa, share = overstressed_share(config, inside);
+std::string doubt_of_overstress(const Problem& problem, const Inside& inside) {
+  const double overstress_Pa = problem.start.nucleation.overstress_Pa,
+               share = overstressed_share(problem, inside);
   const bool is_against = inside.direction * overstress_Pa < 0 &&
                           std::ranges::any_of(inside.placed, [](const Placed& p) { return p.node.t_Pa > 0; });
   if (share < 1)
@@ -131,24 +131,24 @@ std::string doubt_of_overstress(const input::Case& config, const Inside& inside)
 }
 
 /// Empty, or why the event does not begin.
-std::string doubt_of_beginning(const input::Case& config, const Inside& inside) {
+std::string doubt_of_beginning(const Problem& problem, const Inside& inside) {
   const auto n_beyond = n_beyond_strength(inside);
   if (2 * n_beyond > inside.size())
     return fmt::format("{} is beyond {} at {} of {} nodes inside: they slip at once, without a front",
                        inside.t(), inside.strength(), n_beyond, inside.size());
   if (inside.placed.empty() || n_beyond > 0 || inside.placed.front().node.state) return {};
-  if (has_growing_tractions(config)) return doubt_of_growing_loads(config, inside);
-  if (config.event == EventKind::none)
+  if (problem.has_growing_tractions()) return doubt_of_growing_loads(problem, inside);
+  if (problem.start.kind == EventKind::none)
     return fmt::format("event.kind = none, and {} is below {} at all nodes inside", inside.t(),
                        inside.strength());
-  if (input::is_pushed_at_edge(config) && config.trigger.amount < 1)
+  if (problem.start.pushes_edge() && problem.start.trigger.amount < 1)
     return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below {}",
-                       config.trigger.amount, inside.strength());
-  return input::is_overstressed(config) ? doubt_of_overstress(config, inside) : std::string();
+                       problem.start.trigger.amount, inside.strength());
+  return problem.start.overstresses() ? doubt_of_overstress(problem, inside) : std::string();
 }
 
 /// Empty, or that slip stops for want of length.
-std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) {
+std::string doubt_of_length(const Problem& problem, const RuptureOutlook& o) {
   if (o.cracks) {
     const auto& cracks = o.cracks->of_fronts;
     if (cracks.starts || o.cracks->covers_all) return {};
@@ -163,19 +163,19 @@ std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) 
   if (!of.griffith_half_length_m) return {};
   const double critical_m = 2 * *of.griffith_half_length_m;
   // At a free edge half a crack does.
-  const double min_m = interface::is_at_edge(config.event) ? 0.5 * critical_m : critical_m;
+  const double min_m = interface::is_at_edge(problem.start.kind) ? 0.5 * critical_m : critical_m;
   if (o.trigger_length_m && *o.trigger_length_m < min_m)
     return fmt::format(
         "the trigger's {:.3g} m are less than the {:.3g} m from which a crack runs (Griffith{}): slip may "
         "stop near them",
         *o.trigger_length_m, min_m, min_m < critical_m ? "; at an edge half the critical length" : "");
-  if (critical_m > config.plate.width_m)
+  if (critical_m > problem.width_m())
     return fmt::format("a crack runs from {:.3g} m on (Griffith), longer than the interface", critical_m);
   return {};
 }
 
 /// Why slip that has begun stops.
-std::vector<std::string> doubts_of_growth(const input::Case& config, const Inside& inside,
+std::vector<std::string> doubts_of_growth(const Problem& problem, const Inside& inside,
                                           const RuptureOutlook& o) {
   const auto& of = o.of_nodes;
   if (of.n_weakening == 0) return {"friction does not weaken at any node: no rupture feeds itself"};
@@ -186,7 +186,7 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Insid
   std::vector<std::string> doubts;
   if (of.n_barriers == of.n_nodes)
     doubts.emplace_back("S is beyond 10 at all nodes: no front breaks such strength");
-  if (auto doubt = doubt_of_length(config, o); !doubt.empty()) doubts.push_back(std::move(doubt));
+  if (auto doubt = doubt_of_length(problem, o); !doubt.empty()) doubts.push_back(std::move(doubt));
   return doubts;
 }
 
@@ -205,26 +205,26 @@ std::string note_on_mesh(double zone_elements, bool may_pass_c_S, bool has_state
 }
 
 /// Empty, or that the trigger's force acts against the shear.
-std::string note_on_trigger(const input::Case& config, const statics::Equilibrium& before,
+std::string note_on_trigger(const Problem& problem, const statics::Equilibrium& before,
                             std::span<const double> tributary_m) {
-  if (!input::is_pushed_at_edge(config)) return {};
-  const auto zone = motion::trigger_zone(before, config.event, config.trigger.zone_m);
+  if (!problem.start.pushes_edge()) return {};
+  const auto zone = motion::trigger_zone(before, problem.start.kind, problem.start.trigger.zone_m);
   const double direction = motion::load_direction(before, tributary_m, zone);
   if (direction * statics::contact_force(before, tributary_m).shear_N_per_m >= 0) return {};
   return fmt::format("the trigger acts to {}x, against the shear, as its zone is loaded before the event",
                      direction < 0 ? '-' : '+');
 }
 
-void add_notes(const input::Case& config, RuptureOutlook& o) {
+void add_notes(const Problem& problem, RuptureOutlook& o) {
   if (!o.process_zone_elements) return;
-  const auto bodies = bodies_of(config);
+  const auto bodies = materials_of(problem);
   if (auto note = note_on_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
-                               config.friction.has_state(), o.nominal);
+                               problem.friction.law.has_state(), o.nominal);
       !note.empty())
     o.notes.push_back(std::move(note));
   const double length_m = stability::damping_length_m(bodies);
   const double harmless_m = harmless_damping * *o.of_nodes.process_zone_m;
-  const double advised_m = advised_damping_s(config) * stability::slower_c_L_m_per_s(bodies);
+  const double advised_m = advised_damping_s(problem) * stability::slower_c_L_m_per_s(bodies);
   if (length_m > harmless_m)
     o.notes.push_back(fmt::format(
         "damping: beta_R c_L = {:.3g} m is {:.3g} % of the process zone; beyond 2 % it changes speeds and "
@@ -235,28 +235,28 @@ void add_notes(const input::Case& config, RuptureOutlook& o) {
 }
 
 /// How far the place holds where fronts pass c_S, which is that of a nucleation of the critical length.
-void add_to_regime(const input::Case& config, RuptureOutlook& o) {
+void add_to_regime(const Problem& problem, RuptureOutlook& o) {
   auto& of = o.of_nodes;
   if (!of.supershear_half_length_m || !std::isfinite(*of.supershear_half_length_m)) return;
   constexpr double longer = 1.1;
   const double triggers = o.trigger_length_m.value_or(0) / (2 * *of.griffith_half_length_m) *
-                          (interface::is_at_edge(config.event) ? 2 : 1);
+                          (interface::is_at_edge(problem.start.kind) ? 2 : 1);
   if (triggers > longer)
     of.regime += fmt::format(
         "; the trigger has {:.2g} times the critical length: no formula tells by how much sooner", triggers);
-  else if (*of.supershear_half_length_m > config.plate.width_m && stability::are_alike(bodies_of(config)))
+  else if (*of.supershear_half_length_m > problem.width_m() && stability::are_alike(materials_of(problem)))
     of.regime += "; that is beyond the interface";
 }
 
 /// Where friction weakens with the rate of steady sliding, in words. @param x_m  of the interface nodes
-std::string weakening_along_x(const input::Case& config, const std::vector<double>& x_m,
-                              double speed_m_per_s) {
-  const auto laws = input::friction_at(config, x_m);
+std::string weakening_along_x(const Problem& problem, const std::vector<double>& x_m, double speed_m_per_s) {
+  const auto laws = friction_at(problem, x_m);
   std::size_t n_weakening = 0;
   std::vector<std::pair<double, double>> stretches_m;
   bool goes_on = false;
   for (std::size_t k = 0; k < x_m.size(); ++k) {
-    const auto state = *interface::state_response(laws.empty() ? config.friction : laws[k], speed_m_per_s);
+    const auto state =
+        *interface::state_response(laws.empty() ? problem.friction.law : laws[k], speed_m_per_s);
     constexpr double rounding = 1e-9;
     const bool weakens = state.b > (1 + rounding) * state.a;
     if (weakens && !goes_on) stretches_m.emplace_back(x_m[k], x_m[k]);
@@ -276,27 +276,27 @@ std::string weakening_along_x(const input::Case& config, const std::vector<doubl
 }
 
 /// Weakening along x at the slip rate before the event and at 1 m/s, which differ under strong weakening.
-std::string steady_sliding(const input::Case& config, const std::vector<double>& x_m) {
-  if (!config.friction.has_state()) return {};
-  const auto slow = weakening_along_x(config, x_m, 0), fast = weakening_along_x(config, x_m, 1);
+std::string steady_sliding(const Problem& problem, const std::vector<double>& x_m) {
+  if (!problem.friction.law.has_state()) return {};
+  const auto slow = weakening_along_x(problem, x_m, 0), fast = weakening_along_x(problem, x_m, 1);
   return slow == fast ? slow : fmt::format("{}; at 1 m/s {}", slow, fast);
 }
 
-RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const std::vector<double>& x_m,
+RuptureOutlook outlook_of(const Problem& problem, const Inside& inside, const std::vector<double>& x_m,
                           bool nominal) {
   std::vector<stability::NodeBefore> nodes;
   for (const auto& p : inside.placed) nodes.push_back(p.node);
   RuptureOutlook o;
   o.nominal = nominal;
-  o.of_nodes = stability::outlook(bodies_of(config), nodes);
-  o.trigger_length_m = trigger_length_m(config);
-  if (config.friction.has_state()) o.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
-  o.steady_sliding = steady_sliding(config, x_m);
-  o.cracks = quick_prediction(config);
+  o.of_nodes = stability::outlook(materials_of(problem), nodes);
+  o.trigger_length_m = trigger_length_m(problem);
+  if (problem.friction.law.has_state()) o.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
+  o.steady_sliding = steady_sliding(problem, x_m);
+  o.cracks = quick_prediction(problem);
   if (o.of_nodes.process_zone_m)
-    o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
-  add_to_regime(config, o);
-  add_notes(config, o);
+    o.process_zone_elements = *o.of_nodes.process_zone_m / problem.element_size_m();
+  add_to_regime(problem, o);
+  add_notes(problem, o);
   if (const auto n_beyond = n_beyond_strength(inside); n_beyond > 0 && 2 * n_beyond <= inside.size())
     o.notes.push_back(fmt::format("{} is beyond {} at {} of {} nodes inside: they slip at once", inside.t(),
                                   inside.strength(), n_beyond, inside.size()));
@@ -304,56 +304,64 @@ RuptureOutlook outlook_of(const input::Case& config, const Inside& inside, const
 }
 
 /// Adds doubts by tractions that are known.
-void add_doubts(const input::Case& config, const Inside& inside, RuptureOutlook& o) {
-  for (auto doubt : {doubt_of_beginning(config, inside), doubt_of_forced_patch(config)})
+void add_doubts(const Problem& problem, const Inside& inside, RuptureOutlook& o) {
+  for (auto doubt : {doubt_of_beginning(problem, inside), doubt_of_forced_patch(problem)})
     if (!doubt.empty()) o.doubts.push_back(std::move(doubt));
-  for (auto& doubt : doubts_of_growth(config, inside, o)) o.doubts.push_back(std::move(doubt));
+  for (auto& doubt : doubts_of_growth(problem, inside, o)) o.doubts.push_back(std::move(doubt));
 }
 
 }  // namespace
 
-std::string doubt_of_beginning(const input::Case& config, const statics::Equilibrium& before) {
-  return doubt_of_beginning(config, nodes_inside(config, before));
+double advised_damping_s(const Problem& problem) {
+  const double least_s = stability::damping_of_grid_waves_s(
+      materials_of(problem), problem.friction.law, problem.friction.regularisation, problem.element_size_m());
+  if (least_s == 0) return 0;
+  const double digit_s = std::pow(10, std::floor(std::log10(least_s)) - 2);
+  return digit_s * std::ceil((1 - 1e-9) * least_s / digit_s);
 }
 
-std::string doubt_of_forced_patch(const input::Case& config) {
-  const auto& n = config.nucleation;
-  if (!input::is_forced(config)) return {};
+std::string doubt_of_beginning(const Problem& problem, const statics::Equilibrium& before) {
+  return doubt_of_beginning(problem, nodes_inside(problem, before, {}));
+}
+
+std::string doubt_of_forced_patch(const Problem& problem) {
+  const auto& n = problem.start.nucleation;
+  if (!problem.start.is_forced()) return {};
   const double whole_s = n.half_length_m / n.front_speed_m_per_s + n.weakening_time_s;
-  if (whole_s <= config.time.end_s) return {};
+  if (whole_s <= problem.time.end_s) return {};
   return fmt::format(
       "nucleation.front_speed_m_per_s = {:g}: the forced patch is not of nucleation.half_length_m = {:g} m "
       "before {:.3g} s, time.end_s is {:.3g} s; is the speed in m/s?",
-      n.front_speed_m_per_s, n.half_length_m, whole_s, config.time.end_s);
+      n.front_speed_m_per_s, n.half_length_m, whole_s, problem.time.end_s);
 }
 
-RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
-                               std::span<const double> tributary_m) {
-  const auto inside = nodes_inside(config, before);
-  auto o = outlook_of(config, inside, before.tractions.x_m, false);
-  add_doubts(config, inside, o);
-  if (auto note = note_on_trigger(config, before, tributary_m); !note.empty())
+RuptureOutlook rupture_outlook(const Problem& problem, const statics::Equilibrium& before,
+                               std::span<const double> tributary_m, const std::vector<double>& healed) {
+  const auto inside = nodes_inside(problem, before, healed);
+  auto o = outlook_of(problem, inside, before.tractions.x_m, false);
+  add_doubts(problem, inside, o);
+  if (auto note = note_on_trigger(problem, before, tributary_m); !note.empty())
     o.notes.push_back(std::move(note));
   return o;
 }
 
-RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) {
-  if (is_prestressed(config))
-    return rupture_outlook(config,
-                           statics::prestressed(meshes.plate, prescribed_tractions(config, meshes.plate)),
+RuptureOutlook rupture_outlook(const Problem& problem, const Meshes& meshes) {
+  const auto x_m = mesh::interface_x_m(meshes.plate);
+  if (problem.is_prestressed())
+    return rupture_outlook(problem, statics::prestressed(meshes.plate, prescribed_tractions(problem, x_m)),
                            mesh::tributary_lengths_m(meshes.plate));
-  const double p_Pa = input::nominal_pressure_Pa(config);
-  const double strength_Pa = interface::static_strength_Pa(config.friction, p_Pa);
+  const double p_Pa = nominal_pressure_Pa(problem);
+  const double strength_Pa = interface::static_strength_Pa(problem.friction.law, p_Pa);
   Inside inside;
-  inside.placed = {{0, node_before(config.friction, strength_Pa, p_Pa)}};
-  inside.has_cohesion = config.friction.cohesion_Pa() > 0;
-  auto o = outlook_of(config, inside, interface_x_m(meshes.plate), true);
+  inside.placed = {{0, node_before(problem.friction.law, strength_Pa, p_Pa)}};
+  inside.has_cohesion = problem.friction.law.cohesion_Pa() > 0;
+  auto o = outlook_of(problem, inside, x_m, true);
   // S, and what follows from it, take the tractions along the interface.
   o.of_nodes.S = o.of_nodes.drop_ratio = {nan, nan, nan};
   o.of_nodes.supershear_half_length_m.reset();
   o.of_nodes.regime = "unknown before the statics give the tractions along the interface";
-  if (auto doubt = doubt_of_forced_patch(config); !doubt.empty()) o.doubts.push_back(std::move(doubt));
-  for (auto& doubt : doubts_of_growth(config, inside, o)) o.doubts.push_back(std::move(doubt));
+  if (auto doubt = doubt_of_forced_patch(problem); !doubt.empty()) o.doubts.push_back(std::move(doubt));
+  for (auto& doubt : doubts_of_growth(problem, inside, o)) o.doubts.push_back(std::move(doubt));
   return o;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 #include "run/fracture.hpp"
 #include "run/initial_state.hpp"
 #include "stability/rupture.hpp"
@@ -43,16 +43,20 @@ inline bool may_pass_c_S(const stability::Bodies& bodies, double S) {
 /// cent.
 inline constexpr double harmless_damping = 0.02;
 
+/// The least stiffness damping that leaves no waves of the mesh to grow, up to three digits; 0 where none do.
+double advised_damping_s(const Problem& problem);
+
 /// Why the event does not begin in this state, or begins everywhere at once; empty where it begins.
-std::string doubt_of_beginning(const input::Case& config, const statics::Equilibrium& before);
+std::string doubt_of_beginning(const Problem& problem, const statics::Equilibrium& before);
 /// That a forced patch has not its length before the end; empty where it has, or there is none.
-std::string doubt_of_forced_patch(const input::Case& config);
+std::string doubt_of_forced_patch(const Problem& problem);
 
 /// Outlook of a case whose state before the event is known.
 /// @param tributary_m  [interface nodes]
-RuptureOutlook rupture_outlook(const input::Case& config, const statics::Equilibrium& before,
-                               std::span<const double> tributary_m);
+/// @param healed       see friction_at
+RuptureOutlook rupture_outlook(const Problem& problem, const statics::Equilibrium& before,
+                               std::span<const double> tributary_m, const std::vector<double>& healed = {});
 /// Outlook of a case alone, whose tractions are known where they are prescribed.
-RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes);
+RuptureOutlook rupture_outlook(const Problem& problem, const Meshes& meshes);
 
 }  // namespace slipfront::run

@@ -10,12 +10,11 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/per_node.hpp"
-#include "input/friction_along_x.hpp"
 #include "motion/distributed_stepper.hpp"
 #include "motion/stepper.hpp"
 #include "motion/trigger_zone.hpp"
+#include "problem/contact.hpp"
 #include "run/begin.hpp"
-#include "run/choices.hpp"
 #include "run/notes.hpp"
 #include "run/snapshot_plan.hpp"
 
@@ -25,8 +24,9 @@ namespace {
 
 /// With which the event begins. @tparam Initial  InitialState
 template <class Initial>
-auto& event_state(const input::Case& config, Initial& initial) {
-  return config.event == interface::EventKind::spontaneous ? initial.supercritical : initial.subcritical;
+auto& event_state(const Problem& problem, Initial& initial) {
+  return problem.start.kind == interface::EventKind::spontaneous ? initial.supercritical
+                                                                 : initial.subcritical;
 }
 
 /// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
@@ -72,36 +72,36 @@ PerNode at_nodes(Of of, const interface::FrictionLaw& of_all,
 
 }  // namespace
 
-fronts::FrontOptions front_options(const input::Case& config, const InitialState& initial) {
+fronts::FrontOptions front_options(const Problem& problem, const InitialState& initial) {
   fronts::FrontOptions o;
-  o.l_star_m = config.fronts.l_star_m;
-  o.speed_interval = config.fronts.speed_interval;
-  o.arrest_time_s = config.fronts.arrest_time_s;
+  o.l_star_m = problem.fronts.l_star_m;
+  o.speed_interval = problem.fronts.speed_interval;
+  o.arrest_time_s = problem.fronts.arrest_time_s;
   o.arrest_time_by_event = true;
-  o.min_length_m = config.fronts.min_length_m;
-  o.crack_share = config.fronts.crack_share;
-  o.pulse_share = config.fronts.pulse_share;
-  const auto laws = input::friction_at(config, initial.subcritical.tractions.x_m);
-  o.mu_s = at_nodes(interface::static_coefficient, config.friction, laws);
-  o.cohesion_Pa = at_nodes(&interface::FrictionLaw::cohesion_Pa, config.friction, laws);
-  o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
-                  config.material.plane == solid::Plane::strain};
-  const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
-  const double edge = initial.prescribed ? 0 : config.loading.edge_margin_m;
+  o.min_length_m = problem.fronts.min_length_m;
+  o.crack_share = problem.fronts.crack_share;
+  o.pulse_share = problem.fronts.pulse_share;
+  const auto laws = friction_at(problem, initial.subcritical.tractions.x_m, initial.healed);
+  o.mu_s = at_nodes(interface::static_coefficient, problem.friction.law, laws);
+  o.cohesion_Pa = at_nodes(&interface::FrictionLaw::cohesion_Pa, problem.friction.law, laws);
+  o.elasticity = {problem.above().material.youngs_modulus_Pa, problem.above().material.poissons_ratio,
+                  problem.above().material.plane == solid::Plane::strain};
+  const double margin = problem.start.trigger.zone_m + problem.fronts.trigger_margin_m;
+  const double edge = initial.prescribed ? 0 : problem.loading.edge_margin_m;
   const double contact_from = initial.subcritical.inside_from_m - edge;
   const double contact_to = initial.subcritical.inside_to_m + edge;
-  if (config.event == interface::EventKind::left) {
+  if (problem.start.kind == interface::EventKind::left) {
     o.exclude_left_m = contact_from + margin;
-    o.driven = {{contact_from, contact_from + config.trigger.zone_m}};
+    o.driven = {{contact_from, contact_from + problem.start.trigger.zone_m}};
   }
-  if (config.event == interface::EventKind::right) {
+  if (problem.start.kind == interface::EventKind::right) {
     o.exclude_right_m = contact_to - margin;
-    o.driven = {{contact_to - config.trigger.zone_m, contact_to}};
+    o.driven = {{contact_to - problem.start.trigger.zone_m, contact_to}};
   }
-  if (config.event == interface::EventKind::nucleation) {
-    const auto& n = config.nucleation;
+  if (problem.start.kind == interface::EventKind::nucleation) {
+    const auto& n = problem.start.nucleation;
     const double patch_reach = n.reach_m();
-    const double reach = patch_reach + config.fronts.trigger_margin_m;
+    const double reach = patch_reach + problem.fronts.trigger_margin_m;
     o.exclude_from_m = n.x_m - reach;
     o.exclude_to_m = n.x_m + reach;
     // A patch that passes an edge of a periodic plate goes on at the other one.
@@ -117,17 +117,17 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 namespace {
 
 /// The stepper of one process.
-std::unique_ptr<motion::TimeStepper> whole_stepper(const input::Case& config, const InitialState& initial,
+std::unique_ptr<motion::TimeStepper> whole_stepper(const Problem& problem, const InitialState& initial,
                                                    const motion::Execution& execution) {
-  auto stepper = new_time_stepper(config, initial.mesh, initial.base, execution);
-  stepper->set_probes(probes_of(config, initial.mesh, initial.base));
+  auto stepper = new_time_stepper(problem, initial, execution);
+  stepper->set_probes(probes_of(problem, initial.mesh, initial.base));
   return stepper;
 }
 
-std::unique_ptr<motion::TimeStepper> stepper_of(const input::Case& config, InitialState& initial,
+std::unique_ptr<motion::TimeStepper> stepper_of(const Problem& problem, InitialState& initial,
                                                 const motion::Execution& execution, Processes& processes) {
-  if (processes.size() == 1) return whole_stepper(config, initial, execution);
-  return new_distributed_stepper(config, initial, processes, execution);
+  if (processes.size() == 1) return whole_stepper(problem, initial, execution);
+  return new_distributed_stepper(problem, initial, processes, execution);
 }
 
 /// What only the stepper needed.
@@ -144,78 +144,79 @@ void release_nodes(InitialState& initial) {
 
 }  // namespace
 
-motion::Loads loads_of_event(const input::Case& config, const InitialState& initial) {
-  auto loads = starting_loads(config, event_state(config, initial), initial.mesh, initial.mu_s);
+motion::Loads loads_of_event(const Problem& problem, const InitialState& initial) {
+  auto loads = starting_loads(problem, event_state(problem, initial), initial.mesh, initial.mu_s);
   loads.law_states = initial.law_states;
   return loads;
 }
 
-std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
+std::unique_ptr<motion::TimeStepper> start_event(const Problem& problem, InitialState& initial,
                                                  const motion::Execution& execution, Processes& processes) {
-  auto& state = event_state(config, initial);
+  auto& state = event_state(problem, initial);
   initial.release_displacements(&state);
-  const auto loads = from_root(processes, [&] { return loads_of_event(config, initial); });
+  const auto loads = from_root(processes, [&] { return loads_of_event(problem, initial); });
   // The other ranks get the state without its displacements, and their columns of these.
   std::array<solid::Field, 4> u;
   for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
-  auto stepper = stepper_of(config, initial, execution, processes);
+  auto stepper = stepper_of(problem, initial, execution, processes);
   for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
-  stepper->start(state, top_speed_in_event_m_per_s(config), loads);
+  stepper->start(state, shear_speed_in_event_m_per_s(problem), loads);
   initial.release_displacements();
   release_nodes(initial);
   return stepper;
 }
 
-std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
+std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, InitialState& initial,
                                                   const motion::Execution& execution, Processes& processes) {
-  auto stepper = stepper_of(config, initial, execution, processes);
+  auto stepper = stepper_of(problem, initial, execution, processes);
   release_nodes(initial);
   return stepper;
 }
 
-motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
+motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
                              motion::EventOutput* output, motion::Observers more) {
-  const auto& state = event_state(config, initial);
+  const auto& state = event_state(problem, initial);
   std::optional<motion::Interval> stop_window;
-  if (input::is_sequence(config)) stop_window = {state.inside_from_m, state.inside_to_m};
+  if (problem.is_sequence()) stop_window = {state.inside_from_m, state.inside_to_m};
   const motion::EventSetup setup = {
       .state = state,
-      .mu_s = ratios_at_rest(config, initial.mu_s),
-      .waves = {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
-      .loads_settle_s = loads_settle_s(config),
-      .time = config.time,
-      .sampling = {config.output.history_interval_s, config.output.energy_interval_s,
-                   snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s,
-                   prescribed_stress(config)},
-      .halo = motion::halo_for(initial.mesh, config.fronts.l_star_m),
+      .mu_s = ratios_at_rest(problem, initial.mu_s),
+      .waves = {fastest_speed_m_per_s(problem),
+                stability::radiation_damping_Pa_s_per_m(materials_of(problem))},
+      .loads_settle_s = loads_settle_s(problem),
+      .time = problem.time,
+      .sampling = {problem.output.history_interval_s, problem.output.energy_interval_s,
+                   snapshot_plan(problem, stepper.step_s()).times_s, problem.probe_interval_s,
+                   prescribed_stress(problem)},
+      .halo = motion::halo_for(initial.mesh, problem.fronts.l_star_m),
       .stop_window = stop_window,
-      .slow_m_per_s = input::is_slow(config) ? input::slow_slip_rate_m_per_s(config) : infinity};
+      .slow_m_per_s = problem.is_slow() ? slow_slip_rate_m_per_s(problem) : infinity};
   return {stepper, setup, monitor, output, std::move(more)};
 }
 
-Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
+Result run_from(const Problem& problem, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution, motion::Observers more) {
-  const auto stepper = whole_stepper(config, initial, execution);
-  stepper->start(event_state(config, initial), top_speed_in_event_m_per_s(config),
-                 loads_of_event(config, initial));
-  return run_from(config, initial, *stepper, monitor, nullptr, std::move(more));
+  const auto stepper = whole_stepper(problem, initial, execution);
+  stepper->start(event_state(problem, initial), shear_speed_in_event_m_per_s(problem),
+                 loads_of_event(problem, initial));
+  return run_from(problem, initial, *stepper, monitor, nullptr, std::move(more));
 }
 
-Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& stepper,
+Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& stepper,
                 const motion::Monitor& monitor, motion::EventOutput* output, motion::Observers more) {
   const auto start = Clock::now();
-  auto event = begin_event(config, initial, stepper, monitor, output, std::move(more));
-  auto result = collect(config, stepper, event.run());
+  auto event = begin_event(problem, initial, stepper, monitor, output, std::move(more));
+  auto result = collect(problem, stepper, event.run());
   result.stepping_wall_s = seconds_since(start);
   analyse(result, initial);
   return result;
 }
 
-Result collect(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event) {
+Result collect(const Problem& problem, const motion::TimeStepper& stepper, motion::Event event) {
   Result result;
-  result.config = config;
-  result.speeds = wave_speeds(config.material);
+  result.problem = problem;
+  result.speeds = wave_speeds(problem.above().material);
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
   result.substep_s = stepper.substep_s();
@@ -227,10 +228,10 @@ Result collect(const input::Case& config, const motion::TimeStepper& stepper, mo
 }
 
 std::string end_of_event(const Result& result) {
-  const auto& config = result.config;
+  const auto& problem = result.problem;
   switch (result.event.end) {
     case motion::EventEnd::end_time:
-      return fmt::format("time.end_s = {:g} s was reached", config.time.end_s);
+      return fmt::format("time.end_s = {:g} s was reached", problem.time.end_s);
     case motion::EventEnd::interrupted:
       return fmt::format("interrupted at t = {:.4g} s", result.event.time_s);
     case motion::EventEnd::blow_up:
@@ -241,32 +242,33 @@ std::string end_of_event(const Result& result) {
     case motion::EventEnd::quiet:
       break;
   }
-  if (input::is_sequence(config))
+  if (problem.is_sequence())
     return fmt::format("at t = {:.4g} s all nodes inside had stuck for time.quiet_s = {:g} s",
-                       result.event.time_s, config.time.quiet_s);
+                       result.event.time_s, problem.time.quiet_s);
   return fmt::format(
       "at t = {:.4g} s nothing had moved for time.quiet_s = {:g} s: no slip began, none grew or was faster "
       "than {:.3g} m/s, and no waves were left",
-      result.event.time_s, config.time.quiet_s, result.event.quiet_slip_rate_m_per_s);
+      result.event.time_s, problem.time.quiet_s, result.event.quiet_slip_rate_m_per_s);
 }
 
 void analyse(Result& result, const InitialState& initial) {
-  analyse(result, initial, rupture_outlook(result.config, initial.subcritical, initial.tributary_m));
+  analyse(result, initial,
+          rupture_outlook(result.problem, initial.subcritical, initial.tributary_m, initial.healed));
 }
 
 void analyse(Result& result, const InitialState& initial, const RuptureOutlook& outlook) {
-  const auto& config = result.config;
-  const auto options = front_options(config, initial);
+  const auto& problem = result.problem;
+  const auto options = front_options(problem, initial);
   result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
   result.passages.clear();
   const fracture::Recorded recorded{result.event.record.x_m, result.event.breakdown, result.event.tip_slip};
   for (const auto& front : result.fronts)
-    result.passages.push_back(fracture::passages(front, recorded, bodies_of(config)));
+    result.passages.push_back(fracture::passages(front, recorded, materials_of(problem)));
   result.rupture = outlook;
   auto rupture = outlook;
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
-  result.warnings = notes_of_case(config, rupture, result.step_s);
+  result.warnings = notes_of_case(problem, rupture, result.step_s);
   if (auto warning = contact_warning(initial.subcritical); !warning.empty())
     result.warnings.push_back(warning);
   if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
@@ -277,7 +279,7 @@ void analyse(Result& result, const InitialState& initial, const RuptureOutlook& 
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, "
                     "and drives the motion behind the front",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
-  if (config.time.precision == motion::Precision::single_precision) {
+  if (problem.time.precision == motion::Precision::single_precision) {
     constexpr double most = 1e-3;
     double largest = 0, imbalance = 0;
     for (const auto& e : result.event.energies) {
@@ -291,14 +293,14 @@ void analyse(Result& result, const InitialState& initial, const RuptureOutlook& 
           "small against what rounding takes from it; choose double",
           imbalance / largest));
   }
-  const auto n_after = snapshots_after(config, result.event.time_s).size();
+  const auto n_after = snapshots_after(problem, result.event.time_s).size();
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const bool quiet = result.event.end == motion::EventEnd::quiet;
   const bool ended_early = result.event.end != motion::EventEnd::end_time;
   if (ended_early && n_after > 0)
     result.warnings.push_back(
         fmt::format("{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
-                    config.output.snapshot_times_s.size(), end_of_event(result)));
+                    problem.output.snapshot_times_s.size(), end_of_event(result)));
   if (const double wait_s = fronts::arrest_time_s(result.event.record, options);
       wait_s > options.arrest_time_s)
     result.warnings.push_back(
@@ -314,7 +316,7 @@ void analyse(Result& result, const InitialState& initial, const RuptureOutlook& 
   if (result.event.end == motion::EventEnd::end_time && n_running > 0)
     result.warnings.push_back(
         fmt::format("{} may still be under way at time.end_s = {:g} s; choose a later end to see more",
-                    running, config.time.end_s));
+                    running, problem.time.end_s));
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
 }
 

@@ -10,9 +10,9 @@
 
 #include "fracture/passage.hpp"
 #include "fronts/front.hpp"
-#include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "problem/problem.hpp"
 #include "record/sequence.hpp"
 #include "results/contents.hpp"
 #include "run/initial_state.hpp"
@@ -45,7 +45,7 @@ struct SharedCost {
 
 /// A run with all it found.
 struct Result {
-  input::Case config;
+  Problem problem;
   WaveSpeeds speeds;  ///< of the plate
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   double node_updates_per_step = 0;
@@ -65,27 +65,27 @@ struct Result {
 };
 
 /// With which a case's event begins.
-motion::Loads loads_of_event(const input::Case& config, const InitialState& initial);
+motion::Loads loads_of_event(const Problem& problem, const InitialState& initial);
 
 /// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
 /// @param processes  the ranks that share it
-std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
+std::unique_ptr<motion::TimeStepper> start_event(const Problem& problem, InitialState& initial,
                                                  const motion::Execution& execution = {},
                                                  Processes& processes = one_process());
 
 /// Stepper of the same plate without its motion, which is to be read from where it was kept.
-std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
+std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, InitialState& initial,
                                                   const motion::Execution& execution = {},
                                                   Processes& processes = one_process());
 
 /// The event of a case, about to begin with a started stepper; see motion::EventRun.
-motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
+motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
                              motion::EventOutput* output = nullptr, motion::Observers more = {});
 
 /// The case, the steps and an event, without fronts yet. Collective.
-Result collect(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
+Result collect(const Problem& problem, const motion::TimeStepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
 /// @param outlook  of its initial state
 void analyse(Result& result, const InitialState& initial, const RuptureOutlook& outlook);
@@ -96,18 +96,18 @@ void analyse(Result& result, const InitialState& initial);
 /// @param started  by start_event
 /// @param output  takes samples and snapshots; without one the event keeps them
 /// @param more    further observers
-Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& started,
+Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& started,
                 const motion::Monitor& monitor, motion::EventOutput* output = nullptr,
                 motion::Observers more = {});
 /// Starts the event as well, and leaves the initial state as it is.
-Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
+Result run_from(const Problem& problem, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution = {}, motion::Observers more = {});
 
 /// Why an event ended, in words.
 std::string end_of_event(const Result& result);
 
 /// How a case's fronts are measured.
-fronts::FrontOptions front_options(const input::Case& config, const InitialState& initial);
+fronts::FrontOptions front_options(const Problem& problem, const InitialState& initial);
 
 /// How a run stands, as run.json tells it.
 struct Status {
@@ -123,26 +123,17 @@ Status status_of(const Result& result);
 results::Numbers numbers_of(const Status& status);
 
 inline constexpr const char* run_file = "run.json";
-inline constexpr const char* case_file = "case.resolved.toml";
 /// What run.json is of a run, of a sequence.
 inline constexpr const char* sequence_file = "sequence.json";
-/// The tables of prescribed tractions and of friction as they were read, where there are any.
-inline constexpr const char* prestress_file = "prestress.csv";
-inline constexpr const char* friction_file = "friction.csv";
-
-/// The case as case.resolved.toml has it: its tables lie beside it.
-std::string resolved_text(const input::Case& config);
 /// What the files of its rows hold. @param step_s  of its event
-results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s);
+results::RunFiles run_files(const Problem& problem, const InitialState& initial, double step_s);
 /// What a history of its interface holds.
-results::Table history_table(const input::Case& config, const std::vector<double>& x_m);
+results::Table history_table(const Problem& problem, const std::vector<double>& x_m);
 /// What a case's fields.vtkhdf holds besides.
-results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh);
+results::SnapshotContents snapshot_contents(const Problem& problem, const SnapshotMesh& mesh);
 
-/// Writes them all.
-void write_case(const std::filesystem::path& dir, const input::Case& config);
 /// static.csv: tractions of the common state and, where they vary, the parameters of friction.
-void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial);
+void write_static(const std::filesystem::path& dir, const Problem& problem, const InitialState& initial);
 
 /// Writes the run's folder, which is there: case.resolved.toml with its tables, run.json, interface.h5,
 /// fronts.csv, static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
@@ -153,11 +144,11 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status);
 /// run.json of a run without an event yet, or that has come to none.
-void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status);
+void write_status(const std::filesystem::path& dir, const Problem& problem, const Status& status);
 
 /// sequence.json, events.csv and loading.csv of a sequence so far.
 /// @param end  why it ended, in words; empty before
-void write_sequence(const std::filesystem::path& dir, const input::Case& config,
+void write_sequence(const std::filesystem::path& dir, const Problem& problem,
                     std::span<const record::SequenceEvent> events,
                     std::span<const record::LoadingRow> loading, const std::string& end,
                     const Status& status);
@@ -202,6 +193,6 @@ struct Info {
 /// What a run takes. Of a case that root_has_interface_only only columns of one rank are made.
 /// @param n_processes  ranks that are to share the run, each with a processor
 /// @throws UserError where the plate cannot be divided among so many
-Info info(const input::Case& config, const std::optional<int>& n_processes = {});
+Info info(const Problem& problem, const std::optional<int>& n_processes = {});
 
 }  // namespace slipfront::run

@@ -10,8 +10,7 @@
 #include "base/error.hpp"
 #include "boundary/boundary.hpp"
 #include "fronts/fit.hpp"
-#include "input/friction_along_x.hpp"
-#include "run/choices.hpp"
+#include "problem/contact.hpp"
 
 namespace slipfront::run {
 
@@ -110,22 +109,23 @@ void add_event_works(const record::Energies& of_event, record::Energies& sum) {
 
 }  // namespace
 
-Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, const Processes& processes)
-    : config_(config),
-      path_(config),
-      initial_(unloaded_state(config, processes)),
-      statics_(statics_of(config_, initial_, [monitor] { return monitor(0, 0); })),
-      plate_(solid::make_operator(initial_.mesh, config.material,
-                                  boundary::make_boundary(initial_.mesh, config.machine).edge_sets())),
+Sequence::Sequence(const Problem& problem, const motion::Monitor& monitor, const Processes& processes)
+    : problem_(problem),
+      path_(problem.path()),
+      initial_(unloaded_state(problem, processes)),
+      statics_(statics_of(problem_, initial_, [monitor] { return monitor(0, 0); })),
+      plate_(
+          solid::make_operator(initial_.mesh, problem.above().material,
+                               boundary::make_boundary(initial_.mesh, problem.above().machine).edge_sets())),
       monitor_(monitor) {
-  if (initial_.base) base_ = solid::make_operator(*initial_.base, input::base_material(config));
-  describe_solver(config, statics_, initial_);
+  if (initial_.base) base_ = solid::make_operator(*initial_.base, problem.below().material);
+  describe_solver(problem, statics_, initial_);
   at_rest_ = statics_.tilted();
-  if (input::heals(config)) rest_.rests_since_s.assign(initial_.tributary_m.size(), 0);
-  if (config.friction.has_state())
+  if (problem.heals()) rest_.rests_since_s.assign(initial_.tributary_m.size(), 0);
+  if (problem.friction.law.has_state())
     begin_slow_slip();
-  else if (has_fracture_energy(config))
-    predictor_.emplace(config);
+  else if (has_fracture_energy(problem))
+    predictor_.emplace(problem);
   loading_.push_back(row(LoadingPhase::tilted, 0, 0, at_rest_.tractions));
   add_state(at_rest_, loading_.back());
 }
@@ -165,7 +165,7 @@ LoadingRow Sequence::row(LoadingPhase phase, double time_s, double shear_m,
 }
 
 std::string Sequence::end() const {
-  const auto& sequence = config_.sequence;
+  const auto& sequence = problem_.sequence;
   if (std::ssize(events_) >= sequence.max_events)
     return fmt::format("sequence.max_events = {} was reached", sequence.max_events);
   if (sequence.to_global_sliding && !events_.empty() && events_.back().is_global != 0)
@@ -175,7 +175,7 @@ std::string Sequence::end() const {
 
 void Sequence::require_stands(double time_s, double shear_m, const std::vector<double>& t_Pa,
                               const std::vector<double>& p_Pa) const {
-  const auto& plate = config_.plate;
+  const auto& plate = problem_.above().plate;
   const auto& x_m = at_rest_.tractions.x_m;
   const auto at = fmt::format("{:.6g} s after normal loading, at a shear of {:.6g} m", time_s, shear_m);
   double force = 0, shear_force = 0, moment = 0, from_m = nan, to_m = nan;
@@ -198,7 +198,7 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
         at, acts_m, Key("plate.height_m"), Key("plate.width_m"));
   const double most_m = std::max(plate.width_m, plate.height_m);
   const double edge_m =
-      shear_m - rest_.shear_m - rest_.moved_m - shear_force / config_.machine.shear_stiffness_Pa;
+      shear_m - rest_.shear_m - rest_.moved_m - shear_force / problem_.above().machine.shear_stiffness_Pa;
   if (std::isinf(path_.end_s()) && !(edge_m <= most_m))
     throw UserError(
         "{} no event has begun, and the loaded edge has moved by more than the plate's size, {:g} m: "
@@ -217,12 +217,12 @@ void Sequence::load_to(LoadingPhase phase, const statics::Equilibrium& state) {
 }
 
 void Sequence::begin_slow_slip() {
-  const auto model = input::contact_model(config_, interface_x_m(initial_.mesh));
+  const auto model = contact_model(problem_, mesh::interface_x_m(initial_.mesh));
   interface::QuasiDynamicFriction friction(model, initial_.tributary_m.size(),
-                                           stability::radiation_damping_Pa_s_per_m(bodies_of(config_)));
+                                           stability::radiation_damping_Pa_s_per_m(materials_of(problem_)));
   rest_ = {0, 0, 0, at_rest_.contact, relative(initial_, at_rest_).x_m, friction.initial_states(), {}};
   slow_ = std::make_unique<motion::QuasiDynamicSlip>(statics_, std::move(friction), initial_.tributary_m,
-                                                     top_speed_m_per_s(config_));
+                                                     problem_.shear_speed_m_per_s);
 }
 
 const InitialState* Sequence::next(const SlowRows& slow_rows) {
@@ -232,44 +232,42 @@ const InitialState* Sequence::next(const SlowRows& slow_rows) {
   return &initial_;
 }
 
-std::vector<interface::FrictionLaw> Sequence::heal_until(double time_s) {
-  const auto x_m = interface_x_m(initial_.mesh);
-  auto laws = input::friction_at(config_, x_m);
-  laws.resize(x_m.size(), config_.friction);
-  const auto& sequence = config_.sequence;
+void Sequence::heal_until(double time_s) {
+  const auto x_m = mesh::interface_x_m(initial_.mesh);
+  auto laws = friction_at(problem_, x_m);
+  laws.resize(x_m.size(), problem_.friction.law);
+  const auto& sequence = problem_.sequence;
   initial_.mu_s.clear();
+  initial_.healed.clear();
   for (std::size_t k = 0; k < laws.size(); ++k) {
-    double& mu_s = laws[k].parameter("mu_s");
-    mu_s +=
-        sequence.healing_per_e_fold * std::log1p((time_s - rest_.rests_since_s[k]) / sequence.healing_time_s);
-    initial_.mu_s.push_back(mu_s);
+    initial_.healed.push_back(sequence.healing_per_e_fold *
+                              std::log1p((time_s - rest_.rests_since_s[k]) / sequence.healing_time_s));
+    initial_.mu_s.push_back(laws[k].parameter("mu_s") + initial_.healed.back());
   }
   statics_.set_mu_s(initial_.mu_s, "sequence.healing_per_e_fold");
-  return laws;
 }
 
-std::vector<interface::FrictionLaw> Sequence::heal_to_critical() {
+void Sequence::heal_to_critical() {
   // From below: what mu_s has grown to at a shear is reached at a later one, until they meet.
   constexpr double accuracy = 1e-10;
   constexpr int most = 1000;
   const double end_m = path_.shear_m(path_.end_s()) - rest_.moved_m;
   double shear_m = at_rest_.shear_m;
   for (int i = 0; i < most && shear_m < end_m; ++i) {
-    auto laws = heal_until(time_s(shear_m));
+    heal_until(time_s(shear_m));
     const double critical_m = statics_.shear_to(1).shear_m;
-    if (critical_m - shear_m <= accuracy * std::abs(critical_m + rest_.moved_m)) return laws;
+    if (critical_m - shear_m <= accuracy * std::abs(critical_m + rest_.moved_m)) return;
     shear_m = critical_m;
   }
   if (shear_m < end_m)
     throw UserError("{} heals the interface faster than the load grows; reduce it, or raise {}",
                     Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_over_c_L"));
-  return heal_until(path_.end_s());
+  heal_until(path_.end_s());
 }
 
 bool Sequence::stick_to_next() {
-  if (input::heals(config_))
-    event_config_ = input::with_friction_at(config_, interface_x_m(initial_.mesh), heal_to_critical());
-  const double margin = config_.loading.critical_margin;
+  if (problem_.heals()) heal_to_critical();
+  const double margin = problem_.loading.critical_margin;
   // Where a share is passed at rest, there may be no shear that brings it about: a strength with a memory
   // leaves nodes beyond mu_s.
   const auto at_share = [&](double share) {
@@ -290,8 +288,8 @@ bool Sequence::stick_to_next() {
   load_to(LoadingPhase::event_begins, initial_.supercritical);
   for (auto* state : {&critical, &initial_.subcritical, &initial_.supercritical})
     state->shear_m += rest_.moved_m;
-  if (has_forces(config_))
-    initial_.loads = resolved_loads(config_, statics_, critical, initial_.subcritical, initial_.tributary_m);
+  if (has_forces(problem_))
+    initial_.loads = resolved_loads(problem_, statics_, critical, initial_.subcritical, initial_.tributary_m);
   return true;
 }
 
@@ -357,7 +355,7 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     return force.shear_N_per_m / force.normal_N_per_m;
   };
   slow_->start(rest_.time_s, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi);
-  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config_);
+  const double rate_m_per_s = inertia_slip_rate_m_per_s(problem_);
   if (events_.empty() && state.fastest_m_per_s() >= rate_m_per_s)
     throw UserError(
         "normal loading alone lets the interface slip at {:.3g} m/s, where an event begins; choose a larger "
@@ -398,7 +396,7 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   loading_.push_back(slow_row(begins ? LoadingPhase::event_begins : LoadingPhase::loaded, from));
   if (!begins) return false;
   std::vector<double> per_shear;
-  for (const double V : state.slip_rate_m_per_s) per_shear.push_back(V / top_speed_m_per_s(config_));
+  for (const double V : state.slip_rate_m_per_s) per_shear.push_back(V / problem_.shear_speed_m_per_s);
   initial_.supercritical = slid_to(state, std::move(per_shear));
   initial_.supercritical.shear_m += rest_.moved_m;
   for (auto& contact : initial_.supercritical.contact)
@@ -406,9 +404,9 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   initial_.subcritical = initial_.supercritical;
   initial_.critical_shear_m = initial_.subcritical.shear_m;
   initial_.law_states = {state.psi};
-  if (has_forces(config_))
+  if (has_forces(problem_))
     initial_.loads =
-        resolved_loads(config_, statics_, initial_.subcritical, initial_.subcritical, initial_.tributary_m);
+        resolved_loads(problem_, statics_, initial_.subcritical, initial_.subcritical, initial_.tributary_m);
   return true;
 }
 
@@ -419,7 +417,7 @@ void Sequence::record_event(const Result& result) {
   const auto& at_end = event.interface_at_end;
   const record::StaticState tractions_at_end{event.record.x_m, at_end.t_Pa, at_end.p_Pa};
   const auto u = relative(initial_, initial_.supercritical);
-  const double shear_m = begins.shear_m + top_speed_in_event_m_per_s(config_) * event.time_s;
+  const double shear_m = begins.shear_m + shear_speed_in_event_m_per_s(problem_) * event.time_s;
   rest_.contact.clear();
   rest_.u_x_m.clear();
   double mean_m = 0;
@@ -431,7 +429,7 @@ void Sequence::record_event(const Result& result) {
   for (double& u_x_m : rest_.u_x_m) u_x_m -= mean_m;
   rest_.moved_m += mean_m;
   rest_.shear_m = shear_m - rest_.moved_m;
-  rest_.time_s = begins.time_s + (top_speed_in_event_m_per_s(config_) > 0 ? event.time_s : 0);
+  rest_.time_s = begins.time_s + (shear_speed_in_event_m_per_s(problem_) > 0 ? event.time_s : 0);
   auto ends = row(LoadingPhase::slip_ends, rest_.time_s, shear_m, tractions_at_end);
   // Changes, since the strain energy of a motion belongs to half a step earlier.
   const auto &first = event.energies.front(), &last = event.energies.back();
@@ -463,7 +461,7 @@ void Sequence::equilibrate() {
     at_rest_ = statics_.slid_to(rest_.contact, rest_.u_x_m, {}, rest_.shear_m);
     return;
   }
-  if (input::heals(config_)) heal_until(rest_.time_s);
+  if (problem_.heals()) heal_until(rest_.time_s);
   statics_.hold(rest_.contact, rest_.u_x_m);
   at_rest_ = statics_.shear_by(rest_.shear_m);
 }
@@ -542,7 +540,7 @@ void Sequence::add_event(const Result& result, const LoadingRow& before, const L
 
 void Sequence::predict(record::SequenceEvent& event) {
   if (!predictor_) return;
-  if (event_config_) predictor_->set_friction(event_config_->friction_along_x);
+  predictor_->set_healed(initial_.supercritical.tractions.x_m, initial_.healed);
   const auto p = predictor_->predict({}, initial_.supercritical.peak_x_m, &initial_.supercritical.tractions);
   for (const auto& front : p.of_fronts.fronts) {
     // The last node of a front that arrests is the one that it does not break.
@@ -565,7 +563,7 @@ void Sequence::serialize(StateArchive& archive) {
                        are_finite(rest_.u_x_m) && std::isfinite(rest_.shear_m) &&
                        std::isfinite(rest_.time_s) && std::isfinite(rest_.moved_m) &&
                        std::ranges::max(rest_.contact) <= statics::Contact::open &&
-                       rest_.rests_since_s.size() == (input::heals(config_) ? n : 0) &&
+                       rest_.rests_since_s.size() == (problem_.heals() ? n : 0) &&
                        are_finite(rest_.rests_since_s) && rest_.psi.size() == (slow_ ? n : 0) &&
                        are_finite(rest_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
                        std::ranges::all_of(

@@ -11,7 +11,6 @@
 #include "record/sequence.hpp"
 #include "run/fracture.hpp"
 #include "run/initial_state.hpp"
-#include "run/loading_path.hpp"
 #include "run/run.hpp"
 #include "solid/operator.hpp"
 
@@ -25,7 +24,7 @@ class Sequence {
  public:
   /// @param monitor  asked between linear solutions
   /// @throws UserError, Interrupted as make_initial_state
-  Sequence(const input::Case& config, const motion::Monitor& monitor,
+  Sequence(const Problem& problem, const motion::Monitor& monitor,
            const Processes& processes = one_process());
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
@@ -41,8 +40,6 @@ class Sequence {
   /// Under a law with a state: the first one in which a node slips at sequence.inertia_slip_rate_m_per_s.
   /// @param slow_rows  takes rows of slow slip, their time since normal loading
   const InitialState* next(const SlowRows& slow_rows = [](const record::History&) {});
-  /// The case of the event that begins so: where mu_s has grown, with it.
-  const input::Case& config_of_event() const { return event_config_ ? *event_config_ : config_; }
   /// Finds the equilibrium behind the event that has begun so, and has come to rest.
   void record_event(const Result& result);
 
@@ -68,11 +65,11 @@ class Sequence {
   void begin_slow_slip();
   /// Loads by equilibria to the next event. @return whether it begins before sequence.end_s
   bool stick_to_next();
-  /// Gives nodes the mu_s that they have at a time. @return their laws with it
-  std::vector<interface::FrictionLaw> heal_until(double time_s);
-  /// The first shear since normal loading, at most that of sequence.end_s, at which t/p inside reaches mu_s,
-  /// which grows.
-  std::vector<interface::FrictionLaw> heal_to_critical();
+  /// Gives nodes the mu_s that they have at a time.
+  void heal_until(double time_s);
+  /// The same at the first shear since normal loading, at most that of sequence.end_s, at which t/p inside
+  /// reaches mu_s, which grows.
+  void heal_to_critical();
   bool slip_to_next(const SlowRows& slow_rows);
   /// @param u_x_per_shear  see statics::Statics::slid_to
   statics::Equilibrium slid_to(const motion::QuasiDynamicState& state,
@@ -100,9 +97,8 @@ class Sequence {
   void add_event(const Result& result, const record::LoadingRow& before, const record::LoadingRow& after,
                  const record::StaticState& tractions_after);
 
-  input::Case config_;
-  std::optional<input::Case> event_config_;  ///< of the last event that began, where mu_s grows at rest
-  LoadingPath path_;
+  Problem problem_;
+  problem::LoadingPath path_;
   InitialState initial_;
   statics::Statics statics_;
   solid::Operator plate_;

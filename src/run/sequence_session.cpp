@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "files/checksum.hpp"
 #include "files/files.hpp"
+#include "problem/source.hpp"
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 #include "run/sequence.hpp"
@@ -27,16 +28,16 @@ constexpr const char* event_work = "event of a sequence";
 /// A sequence on rank 0; its events are runs on all ranks.
 class SequenceSession {
  public:
-  SequenceSession(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+  SequenceSession(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
                   const SessionHooks& hooks, const EventDone& done, int sessions)
       : folder_(folder),
-        config_(config),
+        problem_(problem),
         hooks_(hooks),
         done_(done),
         options_(options),
         checkpoints_(folder.state()),
         resumed_(sessions > 0),
-        head_(checkpoint_head(config)) {
+        head_{.source = problem.source} {
     head_.sessions = sessions + 1;
   }
 
@@ -64,7 +65,7 @@ class SequenceSession {
   }
 
   results::ResultFolder& folder_;
-  const input::Case& config_;
+  const Problem& problem_;
   const SessionHooks& hooks_;
   const EventDone& done_;
   SessionOptions options_;
@@ -89,7 +90,7 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
     if (end.empty())
       end = fmt::format("no event begins before the loading ends, at {:g} s",
                         sequence_->loading().back().time_s);
-    write_case(folder_.unfinished(), config_);
+    problem::write_case(folder_.unfinished(), problem_.source);
     try {
       require_parts_unchanged();
     } catch (const UserError& error) {
@@ -115,16 +116,16 @@ FinishedSequence SequenceSession::run(std::unique_ptr<Checkpoints::Checkpoint> k
 }
 
 void SequenceSession::begin(Checkpoints::Checkpoint* kept) {
-  write_sequence(folder_.unfinished(), config_, {}, {}, "", {"running", "", head_.sessions});
+  write_sequence(folder_.unfinished(), problem_, {}, {}, "", {"running", "", head_.sessions});
   sequence_ = std::make_unique<Sequence>(
-      config_, [this](std::int64_t, std::int64_t) { return hooks_.request() != Request::stop; },
+      problem_, [this](std::int64_t, std::int64_t) { return hooks_.request() != Request::stop; },
       *options_.processes);
   if (kept == nullptr) return;
   try {
     kept->body(sums_, slow_sums_);
     sequence_->serialize(kept->body);
     kept->body.close();
-    const std::size_t n_slow = input::is_slow(config_) ? sums_.size() : 0;
+    const std::size_t n_slow = problem_.is_slow() ? sums_.size() : 0;
     require_possible(sums_.size() == sequence_->events().size() && slow_sums_.size() == n_slow, "events");
   } catch (const StateError& error) {
     throw UserError("{}: {}; start a new run", kept->body.path().string(), error.what());
@@ -157,9 +158,9 @@ bool SequenceSession::run_event() {
   results::ResultFolder event_folder(dir, event_work, &folder_);
   // A case file comes last of what a run begins with.
   const bool goes_on =
-      event_folder.has_unfinished() && files::is_there(event_folder.unfinished() / case_file);
+      event_folder.has_unfinished() && files::is_there(event_folder.unfinished() / problem::case_file);
   const auto finished = goes_on ? resume(event_folder, nullptr, options_, hooks)
-                                : run_into(event_folder, sequence_->config_of_event(), options_, hooks);
+                                : run_into(event_folder, problem_, options_, hooks);
   const auto& event = finished.result.event;
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part, event.time_s));
@@ -176,7 +177,7 @@ UserError SequenceSession::does_not_rest(const std::string& part, const Result& 
   const auto& row = result.event.interface_at_end;
   const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
   if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
-    return config_.machine.is_rigid()
+    return problem_.above().machine.is_rigid()
                ? UserError(
                      "{}, and slip does not slow down: the load drives it on; choose a slower one ({}), or "
                      "press harder; {}",
@@ -198,7 +199,7 @@ const InitialState* SequenceSession::load_to(const std::string& event) {
     if (!slow) {
       const auto dir = results::slow_folder(folder_.unfinished(), sequence_->events().size() + 1);
       files::make_folders(dir);
-      slow.emplace(dir, results::RunFiles{history_table(config_, row.x_m), {}});
+      slow.emplace(dir, results::RunFiles{history_table(problem_, row.x_m), {}});
     }
     slow->sample(row);
     if (++n_rows < told_at) return;
@@ -231,7 +232,7 @@ void SequenceSession::keep() {
 }
 
 void SequenceSession::write(const std::string& end, const Status& status) {
-  write_sequence(folder_.unfinished(), config_, sequence_->events(), sequence_->loading(), end, status);
+  write_sequence(folder_.unfinished(), problem_, sequence_->events(), sequence_->loading(), end, status);
 }
 
 void SequenceSession::fail(const char* status, const std::string& reason) noexcept {
@@ -244,18 +245,18 @@ void SequenceSession::fail(const char* status, const std::string& reason) noexce
 
 }  // namespace
 
-FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::Case& config,
+FinishedSequence run_sequence_into(results::ResultFolder& folder, const Problem& problem,
                                    const SessionOptions& options, const SessionHooks& hooks,
                                    const EventDone& done) {
-  begin_work(folder, config);
-  return SequenceSession(folder, config, options, hooks, done, 0).run({});
+  begin_work(folder, problem);
+  return SequenceSession(folder, problem, options, hooks, done, 0).run({});
 }
 
-FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
+FinishedSequence resume_sequence(results::ResultFolder& folder, const Problem* expected,
                                  const SessionOptions& options, const SessionHooks& hooks,
                                  const EventDone& done) {
-  auto [config, kept, sessions] = load_unfinished(folder, expected, hooks.note);
-  return SequenceSession(folder, config, options, hooks, done, sessions).run(std::move(kept));
+  auto [problem, kept, sessions] = load_unfinished(folder, expected, hooks.note);
+  return SequenceSession(folder, problem, options, hooks, done, sessions).run(std::move(kept));
 }
 
 }  // namespace slipfront::run

@@ -24,14 +24,14 @@ using EventDone = std::function<void(std::size_t number, const record::SequenceE
 /// a folder of its own, events/0001 and so on, as a run's. What was computed stays in DIR/unfinished until
 /// all of it is published.
 /// @throws UserError, also where an event does not come to rest; BlowUp, Interrupted, WriteError as run_into
-FinishedSequence run_sequence_into(results::ResultFolder& folder, const input::Case& config,
+FinishedSequence run_sequence_into(results::ResultFolder& folder, const Problem& problem,
                                    const SessionOptions& options, const SessionHooks& hooks,
                                    const EventDone& done);
 
 /// Goes on with a sequence that was left unfinished, as if it had never stopped.
 /// @param expected  a case that it must be, or null
 /// @throws as resume
-FinishedSequence resume_sequence(results::ResultFolder& folder, const input::Case* expected,
+FinishedSequence resume_sequence(results::ResultFolder& folder, const Problem* expected,
                                  const SessionOptions& options, const SessionHooks& hooks,
                                  const EventDone& done);
 

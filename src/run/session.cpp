@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "base/caller.hpp"
@@ -13,12 +14,10 @@
 #include "base/error.hpp"
 #include "base/state.hpp"
 #include "files/text.hpp"
-#include "input/schema.hpp"
+#include "problem/source.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
-#include "run/case_message.hpp"
 #include "run/checkpoint.hpp"
-#include "run/choices.hpp"
 #include "run/fields.hpp"
 #include "run/shared_states.hpp"
 
@@ -41,19 +40,19 @@ class Session {
  public:
   /// @param folder    null on other ranks
   /// @param sessions  that were before, whose work is in the folder
-  Session(results::ResultFolder* folder, const input::Case& config, const SessionOptions& options,
+  Session(results::ResultFolder* folder, const Problem& problem, const SessionOptions& options,
           const SessionHooks& hooks, int sessions)
       : folder_(folder),
-        config_(config),
+        problem_(problem),
         options_(options),
         hooks_(hooks),
         processes_(*options.processes),
-        execution_{.threads = options.threads.value_or(suitable_threads(config))},
+        execution_{.threads = options.threads.value_or(suitable_threads(problem))},
         resumed_(sessions > 0) {
     if (!is_root()) return;
     dir_ = folder->unfinished();
     checkpoints_.emplace(folder->state());
-    head_ = checkpoint_head(config);
+    head_ = CheckpointHead{.source = problem.source};
     head_.sessions = sessions + 1;
   }
 
@@ -96,7 +95,7 @@ class Session {
 
   results::ResultFolder* folder_;
   std::filesystem::path dir_;
-  const input::Case& config_;
+  const Problem& problem_;
   const SessionOptions& options_;
   const SessionHooks& hooks_;
   Processes& processes_;
@@ -132,7 +131,7 @@ void read_from(Checkpoints::Checkpoint* kept, Read&& read) {
 Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
     if (kept) head_.wall_s = kept->head.wall_s;
-    write_status(dir_, config_, {"running", "before the event", head_.sessions});
+    write_status(dir_, problem_, {"running", "before the event", head_.sessions});
     begin_event(kept.get(), kept && kept->head.in_event);
     kept.reset();
     return finish(event_->run());
@@ -155,7 +154,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
 void Session::fail(const char* status, const std::string& reason) noexcept {
   try {
     if (stream_) stream_->hand_over();
-    write_status(dir_, config_, {status, reason, head_.sessions});
+    write_status(dir_, problem_, {status, reason, head_.sessions});
   } catch (...) {
     // What made the run fail may also keep its reason from being written.
   }
@@ -166,15 +165,15 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
   std::optional<SharedStates> shared;
   if (options_.shared_states) shared.emplace(*options_.shared_states);
   if (shared)
-    if (auto taken = shared->take(config_, hooks_.note)) return std::move(*taken);
+    if (auto taken = shared->take(problem_, hooks_.note)) return std::move(*taken);
   auto initial = make_initial_state(
-      config_,
+      problem_,
       [&](std::int64_t step, std::int64_t total) {
         return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
       },
       execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); },
       processes_);
-  if (shared) shared->keep(config_, initial);
+  if (shared) shared->keep(problem_, initial);
   return initial;
 }
 
@@ -202,29 +201,31 @@ void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
       stepper_ = nullptr;
       if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
     });
-    event_stepper_ = start_event(config_, initial_, event_execution(), processes_);
-    at_root([&] { stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s())); });
+    event_stepper_ = start_event(problem_, initial_, event_execution(), processes_);
+    at_root([&] { stream_.emplace(dir_, run_files(problem_, initial_, event_stepper_->step_s())); });
     emplace_event();
   }
-  at_root([&] { rupture_ = rupture_outlook(config_, initial_.subcritical, initial_.tributary_m); });
+  at_root([&] {
+    rupture_ = rupture_outlook(problem_, initial_.subcritical, initial_.tributary_m, initial_.healed);
+  });
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
-  at_root([&] { write_static(dir_, config_, initial_); });
+  at_root([&] { write_static(dir_, problem_, initial_); });
   began_ = true;
   write_progress();
 }
 
 void Session::restore_event(Checkpoints::Checkpoint* kept) {
   const auto with_file = [&](const std::function<void()>& read) { at_root([&] { read_from(kept, read); }); };
-  with_file([&] { initial_ = read_initial_state(kept->body, config_, processes_); });
-  const auto loads = from_root(processes_, [&] { return loads_of_event(config_, initial_); });
-  event_stepper_ = make_stepper(config_, initial_, event_execution(), processes_);
+  with_file([&] { initial_ = read_initial_state(kept->body, problem_, processes_); });
+  const auto loads = from_root(processes_, [&] { return loads_of_event(problem_, initial_); });
+  event_stepper_ = make_stepper(problem_, initial_, event_execution(), processes_);
   read_from(kept, [&] { read_motion(kept ? &kept->body : nullptr, *event_stepper_, loads); });
   with_file([&] {
     results::ResultStream::Extents extents;
     kept->body(extents);
-    stream_.emplace(dir_, run_files(config_, initial_, event_stepper_->step_s()), extents);
+    stream_.emplace(dir_, run_files(problem_, initial_, event_stepper_->step_s()), extents);
   });
   emplace_event();
   auto of_event = processes_.from_root([&](MessageBuffer& to) {
@@ -240,7 +241,7 @@ void Session::restore_event(Checkpoints::Checkpoint* kept) {
 
 void Session::emplace_event() {
   event_.emplace(run::begin_event(
-      config_, initial_, *event_stepper_,
+      problem_, initial_, *event_stepper_,
       [&](std::int64_t step, std::int64_t total) { return look("event", step, total, stepper_->time_s()); },
       is_root() ? static_cast<motion::EventOutput*>(&*stream_) : &no_output_,
       options_.observers ? options_.observers() : motion::Observers{}));
@@ -296,7 +297,7 @@ void Session::write_progress() {
   const auto start = Clock::now();
   auto breakdown = stepper_->breakdown();
   if (!is_root()) {
-    collect(config_, *stepper_, {});
+    collect(problem_, *stepper_, {});
     return;
   }
   motion::Event so_far;
@@ -307,7 +308,7 @@ void Session::write_progress() {
   so_far.record = event_->record();
   so_far.breakdown = std::move(breakdown);
   so_far.tip_slip = event_->tip_slip();
-  auto result = collect(config_, *stepper_, std::move(so_far));
+  auto result = collect(problem_, *stepper_, std::move(so_far));
   stream_->hand_over();
   result.stepping_wall_s = wall_s();
   analyse(result, initial_, rupture_);
@@ -317,7 +318,7 @@ void Session::write_progress() {
 }
 
 Finished Session::finish(motion::Event event) {
-  Finished run{collect(config_, *stepper_, std::move(event)), {}};
+  Finished run{collect(problem_, *stepper_, std::move(event)), {}};
   run.result.stepping_wall_s = wall_s();
   event_.reset();
   event_stepper_.reset();
@@ -326,7 +327,7 @@ Finished Session::finish(motion::Event event) {
     analyse(run.result, run.initial, rupture_);
     write_results(run);
   });
-  write_fields(folder_, config_, processes_, hooks_.note);
+  write_fields(folder_, problem_, processes_, hooks_.note);
   at_root([&] {
     if (status_of(run.result).name == "complete") folder_->publish();
   });
@@ -337,40 +338,31 @@ void Session::write_results(const Finished& run) {
   auto status = status_of(run.result);
   status.sessions = head_.sessions;
   // As they are, whatever has happened to the files meanwhile.
-  write_case(dir_, config_);
-  write_static(dir_, config_, run.initial);
+  problem::write_case(dir_, problem_.source);
+  write_static(dir_, problem_, run.initial);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
   stream_->finish(numbers_of(status));
   stream_.reset();
 }
 
-/// The first line in which two texts differ, for a message; of `text`.
-std::string first_difference(const std::string& text, const std::string& other) {
-  std::size_t k = 0;
-  while (k < text.size() && k < other.size() && text[k] == other[k]) ++k;
-  const auto begin = text.rfind('\n', k == 0 ? 0 : k - 1) + 1;
-  std::string line = text.substr(begin, text.find('\n', k) - begin);
-  return files::one_line(line.substr(0, line.find("  #")));
-}
-
-void require_same(const std::string& wanted, const std::string& kept, const std::string& name) {
-  if (wanted != kept)
-    throw UserError("{}: is another case than the one that was begun, which has \"{}\"; start a new run",
-                    name, first_difference(kept, wanted));
-}
-
-void require_unchanged(const std::string& table, const std::string& kept, const std::string& file) {
-  if (table != kept)
-    throw UserError("{}: was changed since the run was begun; restore it, or start a new run", file);
+/// Refuses a case of unfinished work that is not the one that was begun.
+void require_unchanged(const std::filesystem::path& dir, const problem::Source& now,
+                       const problem::Source& begun) {
+  require_same_keys(now, begun, (dir / problem::case_file).string());
+  for (const auto& [table, name] : {std::pair{&problem::Source::prestress_table, problem::prestress_file},
+                                    {&problem::Source::friction_table, problem::friction_file}})
+    if (now.*table != begun.*table)
+      throw UserError("{}: was changed since the run was begun; restore it, or start a new run",
+                      (dir / name).string());
 }
 
 /// On rank 0, with the others in serve_ranks.
-Finished run_shared(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+Finished run_shared(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
                     const SessionHooks& hooks, int sessions, std::unique_ptr<Checkpoints::Checkpoint> kept) {
-  Session session(&folder, config, options, hooks, sessions);
+  Session session(&folder, problem, options, hooks, sessions);
   auto message = packed(true, kept && kept->head.in_event);
-  pack_case(config, message);
+  problem::pack_case(problem, message);
   options.processes->broadcast(std::move(message));
   options.processes->set_awaited(true);
   auto finished = session.run(std::move(kept));
@@ -378,59 +370,58 @@ Finished run_shared(results::ResultFolder& folder, const input::Case& config, co
   return finished;
 }
 
-void require_room(const results::ResultFolder& folder, const input::Case& config) {
-  folder.require_room(input::is_sequence(config) ? config.sequence.max_events : 0);
+void require_room(const results::ResultFolder& folder, const Problem& problem) {
+  folder.require_room(problem.is_sequence() ? problem.sequence.max_events : 0);
 }
 
 }  // namespace
 
-void begin_work(results::ResultFolder& folder, const input::Case& config) {
-  require_room(folder, config);
+int suitable_threads(const Problem& problem) {
+  constexpr double nodes_per_thread = 20'000;
+  constexpr unsigned max_threads = 4;
+  const double useful = mesh_size(problem).n_nodes / nodes_per_thread;
+  const double most = std::clamp(std::thread::hardware_concurrency(), 1U, max_threads);
+  return static_cast<int>(std::clamp(useful, 1.0, most));
+}
+
+void begin_work(results::ResultFolder& folder, const Problem& problem) {
+  require_room(folder, problem);
   try {
     folder.begin();
-    write_case(folder.unfinished(), config);
-    Checkpoints(folder.state()).begin(checkpoint_head(config));
+    problem::write_case(folder.unfinished(), problem.source);
+    Checkpoints(folder.state()).begin(CheckpointHead{.source = problem.source});
   } catch (const WriteError&) {
     folder.abandon();
     throw;
   }
 }
 
-Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
                   const SessionHooks& hooks) {
-  begin_work(folder, config);
-  return run_shared(folder, config, options, hooks, 0, {});
+  begin_work(folder, problem);
+  return run_shared(folder, problem, options, hooks, 0, {});
 }
 
-Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
+Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
                 const SessionHooks& hooks) {
-  auto [config, kept, sessions] = load_unfinished(folder, expected, hooks.note);
-  return run_shared(folder, config, options, hooks, sessions, std::move(kept));
+  auto [problem, kept, sessions] = load_unfinished(folder, expected, hooks.note);
+  return run_shared(folder, problem, options, hooks, sessions, std::move(kept));
 }
 
-input::Case unfinished_case(const results::ResultFolder& folder, const input::Case* expected) {
-  const auto file = folder.unfinished() / case_file;
+Problem unfinished_case(const results::ResultFolder& folder, const Problem* expected) {
+  const auto file = folder.unfinished() / problem::case_file;
   if (!folder.has_unfinished() || !files::is_there(file))
     throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
-  if (expected != nullptr) require_same_case(*expected, folder.unfinished());
-  return input::read_case(file);
+  auto problem = problem::read_problem(folder.unfinished());
+  if (expected != nullptr) require_same_case(expected->source, problem.source);
+  return problem;
 }
 
-CheckpointHead checkpoint_head(const input::Case& config) {
-  CheckpointHead head;
-  head.case_text = resolved_text(config);
-  head.prestress_table = config.prestress.table.text;
-  head.friction_table = config.friction_along_x.table.text;
-  return head;
-}
-
-UnfinishedWork load_unfinished(const results::ResultFolder& folder, const input::Case* expected,
+UnfinishedWork load_unfinished(const results::ResultFolder& folder, const Problem* expected,
                                const std::function<void(const std::string&)>& note) {
   UnfinishedWork work{unfinished_case(folder, expected), Checkpoints(folder.state()).last(note)};
-  const auto& config = work.config;
-  require_room(folder, config);
-  const auto file = folder.unfinished() / case_file;
-  const auto text = resolved_text(config);
+  const auto& problem = work.problem;
+  require_room(folder, problem);
   // A session that was killed has left no checkpoint of its own, perhaps.
   for (const char* name : {run_file, sequence_file})
     work.sessions = std::max(work.sessions, sessions_of(folder.unfinished() / name));
@@ -440,11 +431,9 @@ UnfinishedWork load_unfinished(const results::ResultFolder& folder, const input:
     if (head->program != program_identity())
       throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
                       folder.unfinished().string(), files::one_line(head->program), program_identity());
-    require_same(text, head->case_text, file.string());
-    require_unchanged(config.prestress.table.text, head->prestress_table, config.prestress.file);
-    require_unchanged(config.friction_along_x.table.text, head->friction_table, config.friction_along_x.file);
+    require_unchanged(folder.unfinished(), problem.source, head->source);
   }
-  files::write_text(file, text);  // as it was, however it was written meanwhile
+  problem::write_case(folder.unfinished(), problem.source);  // as it was, however it was written meanwhile
   return work;
 }
 
@@ -456,10 +445,10 @@ void serve_ranks(Processes& processes) {
       auto message = processes.broadcast({});
       if (!unpacked<bool>(message)) return;
       const bool in_event = unpacked<bool>(message);
-      const auto config = unpack_case(message);
+      const auto problem = problem::unpack_case(message);
       SessionOptions options;
       options.processes = &processes;
-      Session(nullptr, config, options, {}, 0).run_beside(in_event);
+      Session(nullptr, problem, options, {}, 0).run_beside(in_event);
     } catch (const FailedElsewhere&) {
     }
 }
@@ -483,14 +472,6 @@ void require_came_to_end(const Result& result, const results::ResultFolder& fold
   if (event.end == motion::EventEnd::blow_up) throw BlowUp(event.reason + "; " + what_was_kept(folder));
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted at t = {:.4g} s; {}", event.time_s, how_to_resume(folder)));
-}
-
-void require_same_case(const input::Case& wanted, const std::filesystem::path& dir) {
-  const input::Case config = input::read_case(dir / case_file);
-  require_same(resolved_text(wanted), resolved_text(config), "the case");
-  require_same(wanted.prestress.table.text, config.prestress.table.text, "the table of its tractions");
-  require_same(wanted.friction_along_x.table.text, config.friction_along_x.table.text,
-               "the table of its friction");
 }
 
 namespace {

@@ -21,6 +21,10 @@ enum class Request {
   stop,  ///< a checkpoint, and an end
 };
 
+/// Threads of one run: one for so many nodes that a step takes longer than waking a thread does, few enough
+/// to leave most of a large machine to others, and no more than processors.
+int suitable_threads(const Problem& problem);
+
 struct SessionOptions {
   std::optional<int> threads;                ///< by default suitable_threads
   double keep_every_wall_s = 300;            ///< wall time between checkpoints
@@ -56,35 +60,33 @@ inline constexpr const char* run_work = "run";
 /// is.
 /// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
 /// Interrupted in ramp or statics; WriteError, what there is being kept.
-Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
+Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
                   const SessionHooks& hooks);
 
 /// Goes on with a run that was left unfinished, as if it had never stopped: from its last checkpoint that is
 /// intact, or from its beginning where there is none. Ramps solve their statics again.
 /// @param expected  a case that it must be, or null
 /// @throws UserError where there is none, or it is one of another program or case
-Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
+Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
                 const SessionHooks& hooks);
 
 /// Begins the work of a case in its folder.
 /// @throws WriteError, nothing being kept
-void begin_work(results::ResultFolder& folder, const input::Case& config);
+void begin_work(results::ResultFolder& folder, const Problem& problem);
 /// The case of the work that was left unfinished in a folder.
 /// @param expected  a case that it must be, or null
 /// @throws UserError where there is none, or it is another case
-input::Case unfinished_case(const results::ResultFolder& folder, const input::Case* expected);
+Problem unfinished_case(const results::ResultFolder& folder, const Problem* expected);
 /// That work, with its last checkpoint that is intact, or null.
 struct UnfinishedWork {
-  input::Case config;
+  Problem problem;
   std::unique_ptr<Checkpoints::Checkpoint> kept;
   int sessions = 1;  ///< so far
 };
 /// @param note  receives a message for each damaged checkpoint
 /// @throws UserError as unfinished_case, and where the checkpoint is of another program or case
-UnfinishedWork load_unfinished(const results::ResultFolder& folder, const input::Case* expected,
+UnfinishedWork load_unfinished(const results::ResultFolder& folder, const Problem* expected,
                                const std::function<void(const std::string&)>& note);
-/// Head of the checkpoints of a case.
-CheckpointHead checkpoint_head(const input::Case& config);
 
 /// On the ranks but 0: their parts of the runs that rank 0 begins or goes on with, until it releases them.
 void serve_ranks(Processes& processes);
@@ -95,9 +97,6 @@ std::string what_was_kept(const results::ResultFolder& folder);
 std::string how_to_resume(const results::ResultFolder& folder);
 /// @throws BlowUp, Interrupted where the event ended so, with what was kept.
 void require_came_to_end(const Result& result, const results::ResultFolder& folder);
-
-/// @throws UserError where a folder has the results or the unfinished work of another case.
-void require_same_case(const input::Case& wanted, const std::filesystem::path& dir);
 
 /// Whether a folder has the results of a run that is complete.
 bool is_complete(const std::filesystem::path& dir);

@@ -15,8 +15,8 @@
 namespace slipfront::run {
 namespace {
 
-std::string state_key(const input::Case& config) {
-  return files::sha256(program_identity() + "\n" + initial_state_key(config));
+std::string state_key(const Problem& problem) {
+  return files::sha256(program_identity() + "\n" + problem.source.state_key);
 }
 
 }  // namespace
@@ -33,9 +33,9 @@ std::filesystem::path SharedStates::file_of(const std::string& key) const {
   return dir_ / ("state-" + key.substr(0, 32) + ".bin");
 }
 
-std::optional<InitialState> SharedStates::take(const input::Case& config,
+std::optional<InitialState> SharedStates::take(const Problem& problem,
                                                const std::function<void(const std::string&)>& note) const {
-  const auto wanted = state_key(config);
+  const auto wanted = state_key(problem);
   const auto file = file_of(wanted);
   if (!files::is_there(file)) return {};
   try {
@@ -43,7 +43,7 @@ std::optional<InitialState> SharedStates::take(const input::Case& config,
     std::string key;
     archive(key);
     if (key != wanted) throw UserError("{}: is the state of another case", file.string());
-    auto initial = read_initial_state(archive, config);
+    auto initial = read_initial_state(archive, problem);
     archive.close();
     require_possible(
         initial.prescribed || (initial.subcritical.u_m.size() > 0 && initial.supercritical.u_m.size() > 0),
@@ -55,8 +55,8 @@ std::optional<InitialState> SharedStates::take(const input::Case& config,
   }
 }
 
-void SharedStates::keep(const input::Case& config, InitialState& initial) const {
-  const auto key = state_key(config);
+void SharedStates::keep(const Problem& problem, InitialState& initial) const {
+  const auto key = state_key(problem);
   // Under a separate name until it is complete: others may be writing the same state.
   char host[256] = {};
   ::gethostname(host, sizeof(host) - 1);

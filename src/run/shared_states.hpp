@@ -22,11 +22,11 @@ class SharedStates {
 
   /// The saved state of a case, with its mesh, if there is one. `note` receives a message for a file that is
   /// damaged or of another case.
-  std::optional<InitialState> take(const input::Case& config,
+  std::optional<InitialState> take(const Problem& problem,
                                    const std::function<void(const std::string&)>& note) const;
   /// Complete under its name, or not there.
   /// @throws WriteError
-  void keep(const input::Case& config, InitialState& initial) const;
+  void keep(const Problem& problem, InitialState& initial) const;
 
  private:
   std::filesystem::path file_of(const std::string& key) const;

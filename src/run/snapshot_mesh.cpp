@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "input/schema.hpp"
 #include "mesh/plate.hpp"
 
 namespace slipfront::run {
@@ -93,9 +92,9 @@ mesh::Slabs in_rows(std::vector<RowsOfBody> bodies) {
 
 }  // namespace
 
-SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, int n_writers) {
-  std::vector<RowsOfBody> bodies = {rows_of(config.plate, false, n_writers)};
-  if (input::has_base_body(config)) bodies.push_back(rows_of(input::base_plate(config), true, n_writers));
+SnapshotMesh snapshot_mesh_in_rows(const Problem& problem, int n_writers) {
+  std::vector<RowsOfBody> bodies = {rows_of(problem.above().plate, false, n_writers)};
+  if (problem.has_below()) bodies.push_back(rows_of(problem.below().plate, true, n_writers));
   const auto n_plate_cells = bodies.front().n_cells();
   return {in_rows(std::move(bodies)), n_plate_cells};
 }

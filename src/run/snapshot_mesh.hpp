@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "input/case.hpp"
 #include "mesh/slabs.hpp"
+#include "problem/problem.hpp"
 #include "run/initial_state.hpp"
 
 namespace slipfront::run {
@@ -21,7 +21,7 @@ struct SnapshotMesh {
 
 /// The mesh, some rows at a time.
 /// @param n_writers  each of which may have a slab at least, as far as there are rows enough
-SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, int n_writers = 1);
+SnapshotMesh snapshot_mesh_in_rows(const Problem& problem, int n_writers = 1);
 
 /// The mesh in one slab.
 SnapshotMesh whole_snapshot_mesh(Meshes meshes);

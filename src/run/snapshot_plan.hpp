@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "input/case.hpp"
+#include "problem/problem.hpp"
 
 namespace slipfront::run {
 
@@ -17,9 +17,9 @@ struct SnapshotPlan {
 /// The times of output.snapshot_times_s and the multiples of output.snapshot_interval_s. Leaves out those
 /// that a run does not reach, and those that fall into the step of an earlier one.
 /// @throws UserError where the interval gives more than any disk holds
-SnapshotPlan snapshot_plan(const input::Case& config, double step_s);
+SnapshotPlan snapshot_plan(const Problem& problem, double step_s);
 
 /// Listed times of snapshots after a time.
-std::vector<double> snapshots_after(const input::Case& config, double time_s);
+std::vector<double> snapshots_after(const Problem& problem, double time_s);
 
 }  // namespace slipfront::run

@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "input/friction_along_x.hpp"
-#include "input/schema.hpp"
 #include "mesh/plate.hpp"
+#include "problem/contact.hpp"
 #include "run/checkpoint.hpp"
-#include "run/choices.hpp"
 #include "run/initial_state.hpp"
 
 namespace slipfront::run {
@@ -39,13 +37,13 @@ class Columns {
  public:
   /// @param own    of them, those that count
   /// @param steps  of the bodies
-  Columns(const input::Case& config, const mesh::Subset& all, int n_columns, solid::Span own,
+  Columns(const Problem& problem, const mesh::Subset& all, int n_columns, solid::Span own,
           const std::vector<motion::BodySteps>& steps, const motion::MaxOverSubdomains& largest)
-      : plate(mesh::make_columns(config.plate, all)), base_material_(input::base_material(config)) {
-    if (input::has_base_body(config)) base = mesh::make_columns(input::base_plate(config), all);
+      : plate(mesh::make_columns(problem.above().plate, all)) {
+    if (problem.has_below()) base = mesh::make_columns(problem.below().plate, all);
     for (const auto& of_body : steps) parts_.push_back({all, n_columns, own, of_body, largest});
-    sources_.push_back({plate, config.material, &parts_.front(), nullptr, config.machine});
-    if (base) sources_.push_back({*base, base_material_, &parts_.back()});
+    sources_.push_back({plate, problem.above().material, &parts_.front(), nullptr, problem.above().machine});
+    if (base) sources_.push_back({*base, problem.below().material, &parts_.back()});
   }
   Columns(const Columns&) = delete;
   Columns& operator=(const Columns&) = delete;
@@ -56,76 +54,78 @@ class Columns {
   std::optional<mesh::Mesh> base;
 
  private:
-  solid::Material base_material_;
   std::vector<motion::BodySubdomain> parts_;
   std::vector<motion::BodySource> sources_;
 };
 
 }  // namespace
 
-GlobalBodies::GlobalBodies(const input::Case& config, const mesh::Mesh& plate,
+GlobalBodies::GlobalBodies(const Problem& problem, const mesh::Mesh& plate,
                            const std::optional<mesh::Mesh>& base)
-    : config_(config), base_material_(input::base_material(config)) {
-  if (plate.is_interface() && config.plate.corner == mesh::Corner::relief)
-    corners_ = mesh::make_corners(config.plate, solid::rings_around_others);
-  bodies_.push_back({plate, config.material, nullptr, corners_ ? &*corners_ : nullptr, config.machine});
-  if (base) bodies_.push_back({*base, base_material_});
+    : problem_(problem) {
+  if (plate.is_interface() && problem.above().plate.corner == mesh::Corner::relief)
+    corners_ = mesh::make_corners(problem.above().plate, solid::rings_around_others);
+  bodies_.push_back(
+      {plate, problem.above().material, nullptr, corners_ ? &*corners_ : nullptr, problem.above().machine});
+  if (base) bodies_.push_back({*base, problem.below().material});
 }
 
 std::vector<motion::BodySteps> GlobalBodies::steps() const {
   std::vector<motion::BodySteps> steps;
-  for (const auto& body : bodies_) steps.push_back(motion::body_steps(body, config_.time));
+  for (const auto& body : bodies_) steps.push_back(motion::body_steps(body, problem_.time));
   return steps;
 }
 
 motion::Partition GlobalBodies::divided(int n_processes, std::span<const motion::BodySteps> steps) const {
-  return motion::partition_bodies(bodies_, steps, config_.time, n_processes);
+  return motion::partition_bodies(bodies_, steps, problem_.time, n_processes);
 }
 
-void require_divisible(const input::Case& config, const Processes& processes) {
-  const auto meshes = check(config, processes);
-  const GlobalBodies whole(config, meshes.plate, meshes.base);
+void require_divisible(const Problem& problem, const Processes& processes) {
+  const auto meshes = check(problem, processes);
+  const GlobalBodies whole(problem, meshes.plate, meshes.base);
   whole.divided(processes.size(), whole.steps());
 }
 
-IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh::Mesh& interface,
+IsolatedSubdomain make_isolated_subdomain(const Problem& problem, const mesh::Mesh& interface,
                                           const std::vector<motion::BodySteps>& steps, solid::Span columns) {
   const mesh::Subset all({columns});
-  Columns some(config, all, interface.grid.stride(), columns, steps, [](std::span<double>) {});
+  Columns some(problem, all, interface.grid.stride(), columns, steps, [](std::span<double>) {});
   const auto contact =
-      input::contact_model(config, interface_x_m(interface), motion::interface_nodes_in(interface, all));
-  auto stepper = std::make_unique<motion::Stepper>(some.sources(), contact, config.time, motion::Execution{});
+      contact_model(problem, mesh::interface_x_m(interface), {}, motion::interface_nodes_in(interface, all));
+  auto stepper =
+      std::make_unique<motion::Stepper>(some.sources(), contact, problem.time, motion::Execution{});
   return {std::move(some.plate), std::move(some.base), std::move(stepper)};
 }
 
-std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input::Case& config,
+std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const Problem& problem,
                                                                     InitialState& initial,
                                                                     Processes& processes,
                                                                     const motion::Execution& execution) {
   auto message = processes.from_root([&](MessageBuffer& to) {
-    const GlobalBodies bodies(config, initial.mesh, initial.base);
+    const GlobalBodies bodies(problem, initial.mesh, initial.base);
     std::vector<const mesh::Mesh*> meshes;
     for (const auto& body : bodies.bodies()) meshes.push_back(&body.mesh);
     Plan plan;
     plan.steps = bodies.steps();
     plan.whole = motion::decomposition_of(bodies.divided(processes.size(), plan.steps), meshes);
     plan.threads = execution.threads;
-    plan.whole_x_m = interface_x_m(initial.mesh);
-    plan.probes = probes_of(config, initial.mesh, initial.base);
-    if (config.friction.has_state()) plan.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
+    plan.whole_x_m = mesh::interface_x_m(initial.mesh);
+    plan.probes = probes_of(problem, initial.mesh, initial.base);
+    if (problem.friction.law.has_state()) plan.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
     to.append(packed(plan, initial.mesh.grid, initial));
   });
   const auto plan = unpacked<Plan>(message);
   if (!processes.is_root()) MessageArchive::reader(message)(initial.mesh.grid, initial);
   const auto rank = processes.rank();
   const auto& partition = plan.whole.partition;
-  const Columns own(config, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
+  const Columns own(problem, partition.all(rank), partition.n_columns(), partition.own(rank), plan.steps,
                     [&](std::span<double> values) { processes.reduce_max(values); });
-  auto contact = input::contact_model(config, plan.whole_x_m,
-                                      plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
+  auto contact = contact_model(problem, plan.whole_x_m, initial.healed,
+                               plan.whole.interface_nodes[static_cast<std::size_t>(rank)]);
   contact.tip_slip_rate_m_per_s = plan.tip_slip_rate_m_per_s;
-  auto stepper = std::make_unique<motion::DistributedStepper>(
-      processes, plan.whole, own.sources(), contact, config.time, motion::Execution{.threads = plan.threads});
+  auto stepper =
+      std::make_unique<motion::DistributedStepper>(processes, plan.whole, own.sources(), contact,
+                                                   problem.time, motion::Execution{.threads = plan.threads});
   stepper->set_probes(plan.probes);
   return stepper;
 }

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/distributed_stepper.hpp"
+#include "problem/problem.hpp"
 #include "processes/processes.hpp"
 #include "run/initial_state.hpp"
 
@@ -17,12 +17,12 @@ namespace slipfront::run {
 
 /// Refuses what so many ranks cannot share; builds the meshes for it.
 /// @throws UserError
-void require_divisible(const input::Case& config, const Processes& processes);
+void require_divisible(const Problem& problem, const Processes& processes);
 
 /// The bodies without their motion, and their probes, each rank with its subdomain. Collective.
 /// @param initial  on rank 0; the others get all of it but meshes and displacements
 /// @throws UserError where the plate is too narrow for so many
-std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input::Case& config,
+std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const Problem& problem,
                                                                     InitialState& initial,
                                                                     Processes& processes,
                                                                     const motion::Execution& execution);
@@ -33,7 +33,7 @@ motion::Loads from_root(Processes& processes, const std::function<motion::Loads(
 /// The bodies of a case; their interfaces may be all that is held.
 class GlobalBodies {
  public:
-  GlobalBodies(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base);
+  GlobalBodies(const Problem& problem, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base);
   GlobalBodies(const GlobalBodies&) = delete;
   GlobalBodies& operator=(const GlobalBodies&) = delete;
 
@@ -44,8 +44,7 @@ class GlobalBodies {
   motion::Partition divided(int n_processes, std::span<const motion::BodySteps> steps) const;
 
  private:
-  const input::Case& config_;
-  solid::Material base_material_;
+  const Problem& problem_;
   std::optional<mesh::Mesh> corners_;  ///< of a plate of which the interface alone is held
   std::vector<motion::BodySource> bodies_;
 };
@@ -58,7 +57,7 @@ struct IsolatedSubdomain {
 };
 /// @param interface  of the plate, or all of it
 /// @param steps      of the whole bodies
-IsolatedSubdomain make_isolated_subdomain(const input::Case& config, const mesh::Mesh& interface,
+IsolatedSubdomain make_isolated_subdomain(const Problem& problem, const mesh::Mesh& interface,
                                           const std::vector<motion::BodySteps>& steps, solid::Span columns);
 
 /// Collective. @throws on rank 0 UserError where another rank is another program

@@ -10,12 +10,11 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "files/files.hpp"
-#include "input/friction_along_x.hpp"
-#include "input/schema.hpp"
+#include "problem/contact.hpp"
+#include "problem/source.hpp"
 #include "results/folder.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
-#include "run/choices.hpp"
 #include "run/run.hpp"
 #include "run/snapshot_mesh.hpp"
 #include "run/snapshot_plan.hpp"
@@ -161,10 +160,10 @@ Json rupture_json(const RuptureOutlook& rupture) {
 
 /// The uniform state of the bulk that carries prescribed tractions, null where they do not determine it, and
 /// whether recorded strain and stress hold it; else they are the change from it.
-Json prestress_json(const input::Case& config) {
-  const input::Prestress& prestress = config.prestress;
+Json prestress_json(const Problem& problem) {
+  const auto& prestress = *problem.prestress;
   const bool is_uniform = prestress.file.empty();
-  return {{"recorded", prescribed_stress(config).has_value()},
+  return {{"recorded", prescribed_stress(problem).has_value()},
           {"stress_xx_Pa", Json()},
           {"stress_yy_Pa", is_uniform ? Json(-prestress.p_Pa) : Json()},
           {"stress_xy_Pa", is_uniform ? optional_json(prestress.t_Pa) : Json()}};
@@ -210,12 +209,12 @@ Json processes_json(const SharedCost& shared) {
 }
 
 /// What every run.json begins with.
-Json about(const input::Case& config, const Status& status) {
+Json about(const Problem& problem, const Status& status) {
   Json json = {{"version", version()},     {"commit", commit()},      {"compiler", compiler()},
-               {"processor", processor()}, {"host", host_name()},     {"title", config.title},
+               {"processor", processor()}, {"host", host_name()},     {"title", problem.source.title},
                {"status", status.name},    {"reason", status.reason}, {"sessions", status.sessions}};
   if (status.name == "running") json["process"] = getpid();
-  for (const auto& state : config.friction.states()) json["law_states"].push_back(state.name);
+  for (const auto& state : problem.friction.law.states()) json["law_states"].push_back(state.name);
   return json;
 }
 
@@ -223,7 +222,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
   const auto& event = result.event;
   auto warnings = result.warnings;
   if (!event.reason.empty()) warnings.push_back(event.reason);
-  Json json = about(result.config, status);
+  Json json = about(result.problem, status);
   const bool ended = status.name != "running";
   json["end"] = ended ? Json(name(event.end)) : Json();
   json["end_reason"] = ended ? Json(end_of_event(result)) : Json();
@@ -247,20 +246,22 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                {"energy_at_end", energy_json(event.energies.back())},
                {"onsets", event.record.n_onsets()},
                {"snapshot_times_after_the_event_s",
-                status.name == "running" ? Json() : Json(snapshots_after(result.config, event.time_s))},
+                status.name == "running" ? Json() : Json(snapshots_after(result.problem, event.time_s))},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
   json["friction_work"] = friction_work_json(result, initial);
-  if (initial.prescribed) json["prestress"] = prestress_json(result.config);
+  if (initial.prescribed) json["prestress"] = prestress_json(result.problem);
   if (result.shared) json["processes"] = processes_json(*result.shared);
-  if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;
-  if (input::has_base_body(result.config))
-    json["base"] = {{"columns", initial.base->grid.columns},
-                    {"rows", initial.base->grid.rows},
-                    {"wave_speeds", speeds_json(wave_speeds(input::base_material(result.config)))},
+  if (const auto& bodies = result.problem; bodies.has_below()) {
+    const auto& grid = initial.base->grid;
+    const auto &above = bodies.above().material, &below = bodies.below().material;
+    json["mesh"]["base_rows"] = grid.rows;
+    json["base"] = {{"columns", grid.columns},
+                    {"rows", grid.rows},
+                    {"wave_speeds", speeds_json(wave_speeds(below))},
                     {"generalised_rayleigh_speed_m_per_s",
-                     optional_json(stability::generalised_rayleigh_speed_m_per_s(
-                         result.config.material, input::base_material(result.config)))}};
+                     optional_json(stability::generalised_rayleigh_speed_m_per_s(above, below))}};
+  }
   return json;
 }
 
@@ -292,62 +293,47 @@ results::Numbers numbers_of(const Status& status) {
   return status.name == "complete" ? results::Numbers::finite : results::Numbers::any;
 }
 
-std::string resolved_text(const input::Case& config) {
-  auto resolved = config;
-  if (!resolved.prestress.file.empty()) resolved.prestress.file = prestress_file;
-  if (!resolved.friction_along_x.file.empty()) resolved.friction_along_x.file = friction_file;
-  return input::to_toml(resolved);
-}
-
 /// What a run's HDF5 files say of where they come from.
-static results::Origin origin_of(const input::Case& config) {
-  return {config.title, resolved_text(config)};
+static results::Origin origin_of(const Problem& problem) {
+  return {problem.source.title, problem.source.case_text};
 }
 
-results::Table history_table(const input::Case& config, const std::vector<double>& x_m) {
+results::Table history_table(const Problem& problem, const std::vector<double>& x_m) {
   std::vector<results::Description> law_states;
-  for (const auto& state : config.friction.states())
+  for (const auto& state : problem.friction.law.states())
     law_states.push_back({state.name, state.unit, state.description});
-  return results::history_table(x_m, origin_of(config), law_states);
+  return results::history_table(x_m, origin_of(problem), law_states);
 }
 
-results::RunFiles run_files(const input::Case& config, const InitialState& initial, double step_s) {
-  const auto origin = origin_of(config);
-  const auto n_snapshots = snapshot_plan(config, step_s).times_s.size();
+results::RunFiles run_files(const Problem& problem, const InitialState& initial, double step_s) {
+  const auto origin = origin_of(problem);
+  const auto n_snapshots = snapshot_plan(problem, step_s).times_s.size();
   results::RunFiles files{
-      history_table(config, initial.subcritical.tractions.x_m),
+      history_table(problem, initial.subcritical.tractions.x_m),
       {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
   if (initial.base) {
     const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));
     files.snapshots.seam.insert(files.snapshots.seam.end(), below.begin(), below.end());
   }
-  if (const auto places = input::probe_places(config); !places.empty())
+  if (const auto places = problem.probes; !places.empty())
     files.probes = results::probe_table(places, origin);
   return files;
 }
 
-results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh) {
-  results::SnapshotContents contents{{}, origin_of(config), prescribed_stress(config)};
-  if (!config.output.snapshot_stress) return contents;
-  contents.bodies.push_back({mesh.n_plate_cells, config.material});
-  if (input::has_base_body(config))
-    contents.bodies.push_back({mesh.slabs.n_cells, input::base_material(config)});
+results::SnapshotContents snapshot_contents(const Problem& problem, const SnapshotMesh& mesh) {
+  results::SnapshotContents contents{{}, origin_of(problem), prescribed_stress(problem)};
+  if (!problem.output.snapshot_stress) return contents;
+  contents.bodies.push_back({mesh.n_plate_cells, problem.above().material});
+  if (problem.has_below()) contents.bodies.push_back({mesh.slabs.n_cells, problem.below().material});
   return contents;
 }
 
-void write_case(const std::filesystem::path& dir, const input::Case& config) {
-  if (!config.prestress.file.empty()) files::write_text(dir / prestress_file, config.prestress.table.text);
-  if (!config.friction_along_x.file.empty())
-    files::write_text(dir / friction_file, config.friction_along_x.table.text);
-  files::write_text(dir / case_file, resolved_text(config));  // last, for those who go on with the work
-}
-
-void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial) {
+void write_static(const std::filesystem::path& dir, const Problem& problem, const InitialState& initial) {
   const auto& tractions = initial.subcritical.tractions;
   std::vector<results::NamedColumn> columns;
-  const auto& parameters = description_of(config.friction).parameters;
-  if (config.friction_along_x.varies()) columns.resize(parameters.size());
-  for (const auto& law : input::friction_at(config, tractions.x_m))
+  const auto& parameters = description_of(problem.friction.law).parameters;
+  if (problem.friction.along_x.varies() || !initial.healed.empty()) columns.resize(parameters.size());
+  for (const auto& law : friction_at(problem, tractions.x_m, initial.healed))
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       columns[k].name = parameters[k].key;
       columns[k].values.push_back(law.parameter(parameters[k].key));
@@ -355,8 +341,8 @@ void write_static(const std::filesystem::path& dir, const input::Case& config, c
   results::write_static(dir / "static.csv", tractions, columns);
 }
 
-void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status) {
-  write_json(dir, about(config, status));
+void write_status(const std::filesystem::path& dir, const Problem& problem, const Status& status) {
+  write_json(dir, about(problem, status));
 }
 
 namespace {
@@ -380,7 +366,7 @@ Json loads_json(const record::LoadingRow& row) {
 
 }  // namespace
 
-void write_sequence(const std::filesystem::path& dir, const input::Case& config,
+void write_sequence(const std::filesystem::path& dir, const Problem& problem,
                     std::span<const record::SequenceEvent> events,
                     std::span<const record::LoadingRow> loading, const std::string& end,
                     const Status& status) {
@@ -388,9 +374,9 @@ void write_sequence(const std::filesystem::path& dir, const input::Case& config,
   const auto numbers = goes_on ? results::Numbers::finite : results::Numbers::any;
   results::write_events(dir / "events.csv", events, numbers);
   results::write_loading(dir / "loading.csv", loading, numbers);
-  auto json = about(config, status);
+  auto json = about(problem, status);
   json["end"] = end.empty() ? Json() : Json(end);
-  json["wave_speeds"] = speeds_json(wave_speeds(config.material));
+  json["wave_speeds"] = speeds_json(wave_speeds(problem.above().material));
   json["events"] = events.size();
   if (!loading.empty()) {
     json["largest_friction"] = loads_json(record::strongest(loading));
@@ -413,9 +399,9 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
 
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
   const auto& event = result.event;
-  write_case(dir, result.config);
-  write_static(dir, result.config, initial);
-  results::ResultStream stream(dir, run_files(result.config, initial, result.step_s));
+  problem::write_case(dir, result.problem.source);
+  write_static(dir, result.problem, initial);
+  results::ResultStream stream(dir, run_files(result.problem, initial, result.step_s));
   stream.sample(event.history);
   if (!event.probes.time_s.empty()) stream.probe(event.probes);
   for (const auto& snapshot : event.snapshots) stream.snapshot(snapshot);
@@ -423,7 +409,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   if (!event.snapshots.empty()) {
     const auto mesh = whole_snapshot_mesh({initial.mesh, initial.base});
     results::finish_snapshots(dir / results::snapshot_file, mesh.slabs,
-                              snapshot_contents(result.config, mesh));
+                              snapshot_contents(result.problem, mesh));
   }
   write_so_far(dir, result, event.energies, initial, status_of(result));
   results::seal(dir);

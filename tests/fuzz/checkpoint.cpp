@@ -19,6 +19,7 @@
 #include "run/run.hpp"
 
 using namespace slipfront;
+using problem::make_problem;
 
 namespace {
 
@@ -91,15 +92,15 @@ std::string checkpoint_of(const input::Case& config) {
       ramp = &run;
     };
     try {
-      run::make_initial_state(config, keep, {}, begins);
+      run::make_initial_state(make_problem(config), keep, {}, begins);
     } catch (const Interrupted&) {
     }
   } else {
-    auto initial = run::make_initial_state(config, stop);
-    const auto stepper = run::start_event(config, initial);
+    auto initial = run::make_initial_state(make_problem(config), stop);
+    const auto stepper = run::start_event(make_problem(config), initial);
     head.in_event = true;
     std::optional<motion::EventRun> event;
-    event.emplace(run::begin_event(config, initial, *stepper, [&](std::int64_t, std::int64_t) {
+    event.emplace(run::begin_event(make_problem(config), initial, *stepper, [&](std::int64_t, std::int64_t) {
       checkpoints.keep(head, [&](results::OutputArchive& archive) {
         archive(initial);
         run::write_motion(archive, *stepper);
@@ -118,22 +119,23 @@ std::string checkpoint_of(const input::Case& config) {
 /// Goes on as run::resume does, for some steps.
 void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
   if (kept.head.in_event) {
-    auto initial = run::read_initial_state(kept.body, config);
-    const auto loads = run::loads_of_event(config, initial);
-    const auto stepper = run::make_stepper(config, initial);
+    auto initial = run::read_initial_state(kept.body, make_problem(config));
+    const auto loads = run::loads_of_event(make_problem(config), initial);
+    const auto stepper = run::make_stepper(make_problem(config), initial);
     run::read_motion(&kept.body, *stepper, loads);
-    auto event = run::begin_event(config, initial, *stepper, stop);
+    auto event = run::begin_event(make_problem(config), initial, *stepper, stop);
     results::ResultStream::Extents extents;
     kept.body(extents, event);
     event.require_restored();
     kept.body.close();
     event.run();
   } else {
-    run::make_initial_state(config, stop, {}, [&](motion::Stepper& stepper, motion::RampRun& ramp) {
-      run::read_motion(&kept.body, stepper, {});
-      kept.body(ramp);
-      kept.body.close();
-    });
+    run::make_initial_state(make_problem(config), stop, {},
+                            [&](motion::Stepper& stepper, motion::RampRun& ramp) {
+                              run::read_motion(&kept.body, stepper, {});
+                              kept.body(ramp);
+                              kept.body.close();
+                            });
   }
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz.hpp"
-#include "input/friction_along_x.hpp"
+#include "input/friction_table.hpp"
 #include "input/prestress.hpp"
 #include "interface/friction/slip_weakening.hpp"
 

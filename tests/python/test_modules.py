@@ -54,6 +54,14 @@ def test_modules_include_what_they_are_named_and_nothing_else():
     }
 
 
+def test_a_case_is_read_where_problems_are_made_and_by_commands_alone():
+    readers = {"input", "problem", "cli", "bench", "python"}
+    found = {
+        file for file in (ROOT / "src").rglob("*.[ch]pp") if "input::" in file.read_text(encoding="utf-8")
+    }
+    assert {file.relative_to(ROOT / "src").parts[0] for file in found} <= readers
+
+
 def test_the_way_is_one_way():
     above: set[str] = set()
     for module, sees in built().items():

@@ -16,6 +16,7 @@
 namespace slipfront::run {
 namespace {
 
+using problem::make_problem;
 using test::check_error;
 using test::go_on;
 using test::run_case;
@@ -64,8 +65,8 @@ TEST(Base, SnapshotsHoldBothBodies) {
   auto config = problem_f(2e-3);
   config.time.end_s = 40e-6;
   config.output.snapshot_times_s = {40e-6};
-  const auto initial = make_initial_state(config, go_on);
-  const auto snapshots = run_from(config, initial, go_on).event.snapshots;
+  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto snapshots = run_from(make_problem(config), initial, go_on).event.snapshots;
   ASSERT_EQ(snapshots.size(), 1U);
   mesh::Mesh mesh;
   whole_snapshot_mesh({initial.mesh, initial.base}).slabs.visit(0, [&](const mesh::Slab& slab) {
@@ -95,22 +96,22 @@ TEST(Base, SnapshotsHoldBothBodies) {
 
 TEST(Base, InfoKnowsBothBodies) {
   const auto config = problem_f(2e-3);
-  const auto info = run::info(config);
-  const auto initial = make_initial_state(config, go_on);
-  const auto result = run_from(config, initial, go_on);
+  const auto info = run::info(make_problem(config));
+  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto result = run_from(make_problem(config), initial, go_on);
   EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes() + initial.base->n_nodes());
   EXPECT_EQ(info.step_s, result.step_s);
   EXPECT_EQ(info.n_steps, result.event.steps);
   // The base is faster by 1934/1584: not by a whole number, so that both take the same steps.
   EXPECT_THAT(info.substeps_of_bodies, testing::ElementsAre(18, 18));
   EXPECT_NEAR(info.base_speeds->c_S, 1119.43, 0.005);
-  EXPECT_NEAR(estimated_size(config).n_nodes, static_cast<double>(info.n_nodes),
+  EXPECT_NEAR(estimated_size(make_problem(config)).n_nodes, static_cast<double>(info.n_nodes),
               0.01 * static_cast<double>(info.n_nodes));
   // A base with half the speed of the plate takes one step in two of the plate's.
   auto slow = config;
   slow.base.material = config.material;
   slow.base.material.density_kg_per_m3 *= 4;
-  EXPECT_THAT(run::info(slow).substeps_of_bodies, testing::ElementsAre(18, 36));
+  EXPECT_THAT(run::info(make_problem(slow)).substeps_of_bodies, testing::ElementsAre(18, 36));
 }
 
 TEST(Base, SingleRowsAgreeWithDoubleOnesWhateverTheWaveSpeeds) {
@@ -136,11 +137,11 @@ TEST(Base, ASoftBaseKeepsTheCommonStepShort) {
   auto rigid = config;
   rigid.base.kind = input::BaseKind::rigid;
   const auto result = run_case(config);
-  EXPECT_EQ(result.step_s, 16 * info(rigid).step_s);
+  EXPECT_EQ(result.step_s, 16 * info(make_problem(rigid)).step_s);
   EXPECT_LT(result.event.time_s, config.time.end_s + 1.001 * result.step_s);
   EXPECT_GT(result.event.history.time_s.size(), 8U);
   config.base.material = {.youngs_modulus_Pa = 1e-6, .density_kg_per_m3 = 1e6, .stiffness_damping_s = 0};
-  EXPECT_GT(info(config).n_steps, 8);
+  EXPECT_GT(info(make_problem(config)).n_steps, 8);
 }
 
 TEST(Base, WhatDoesNotFitIsRefused) {
@@ -167,11 +168,11 @@ TEST(Base, ItsMeasuresBelongToTheInitialState) {
   const auto config = problem_f(2e-3);
   auto low = config, light = config, rigid = config;
   low.base.plate.height_m = 0.1;
-  EXPECT_NE(initial_state_key(low), initial_state_key(config));
+  EXPECT_NE(make_problem(low).source.state_key, make_problem(config).source.state_key);
   light.base.material.density_kg_per_m3 = 1;  // at rest under given tractions it has no part
-  EXPECT_EQ(initial_state_key(light), initial_state_key(config));
+  EXPECT_EQ(make_problem(light).source.state_key, make_problem(config).source.state_key);
   rigid.base.kind = input::BaseKind::rigid;
-  EXPECT_NE(initial_state_key(rigid), initial_state_key(config));
+  EXPECT_NE(make_problem(rigid).source.state_key, make_problem(config).source.state_key);
 }
 
 }  // namespace

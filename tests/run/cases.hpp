@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "input/friction_along_x.hpp"
+#include "input/friction_table.hpp"
 #include "input/schema.hpp"
 #include "interface/friction/velocity_weakening.hpp"
+#include "problem/problem.hpp"
 #include "run/run.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::test {
+
+using problem::make_problem;
 
 /// The plate of Kammer et al. (2012) on the rigid plane.
 inline input::Case paper_case() {
@@ -77,14 +80,15 @@ inline bool go_on(std::int64_t, std::int64_t) {
 }
 
 inline run::Result run_case(const input::Case& config) {
-  return run::run_from(config, run::make_initial_state(config, go_on), go_on);
+  const auto problem = make_problem(config);
+  return run::run_from(problem, run::make_initial_state(problem, go_on), go_on);
 }
 
 inline constexpr const char* accepted = "(nothing thrown)";
 
 /// What is wrong with a case before anything is solved, or that it is accepted.
 inline std::string check_error(const input::Case& config) {
-  return error_of([&] { run::check(config); });
+  return error_of([&] { run::check(make_problem(config)); });
 }
 
 }  // namespace slipfront::test

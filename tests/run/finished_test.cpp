@@ -13,6 +13,7 @@
 namespace slipfront::run {
 namespace {
 
+using problem::make_problem;
 namespace fs = std::filesystem;
 
 TEST(FinishedRuns, ServeForTheirCaseAlone) {
@@ -21,8 +22,8 @@ TEST(FinishedRuns, ServeForTheirCaseAlone) {
   const test::TemporaryFolder folder;
   const FinishedRuns finished(folder / "runs");
   for (const auto& config : cases) {
-    const auto initial = make_initial_state(config, test::go_on);
-    finished.keep(run_from(config, initial, test::go_on), initial);
+    const auto initial = make_initial_state(make_problem(config), test::go_on);
+    finished.keep(run_from(make_problem(config), initial, test::go_on), initial);
   }
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder / "runs")) files.push_back(entry.path());
@@ -31,11 +32,11 @@ TEST(FinishedRuns, ServeForTheirCaseAlone) {
     for (const auto& config : cases) {
       Result result;
       InitialState initial;
-      EXPECT_EQ(finished.take(config, result, initial), expected);
+      EXPECT_EQ(finished.take(make_problem(config), result, initial), expected);
     }
   };
   expect_taken(true);
-  EXPECT_FALSE(finished.has(test::coarse_case(interface::EventKind::left)));
+  EXPECT_FALSE(finished.has(make_problem(test::coarse_case(interface::EventKind::left))));
   // Files that took each other's names.
   fs::rename(files[0], folder / "other");
   fs::rename(files[1], files[0]);
@@ -55,10 +56,10 @@ TEST(FinishedRuns, ServeForTheirTableOfFrictionAlone) {
   test::set_table(of_other_table, "x_m,mu_k\n0,0.6\n0.2,0.7\n");
   const test::TemporaryFolder folder;
   const FinishedRuns finished(folder / "runs");
-  const auto initial = make_initial_state(config, test::go_on);
-  finished.keep(run_from(config, initial, test::go_on), initial);
-  EXPECT_TRUE(finished.has(config));
-  EXPECT_FALSE(finished.has(of_other_table));
+  const auto initial = make_initial_state(make_problem(config), test::go_on);
+  finished.keep(run_from(make_problem(config), initial, test::go_on), initial);
+  EXPECT_TRUE(finished.has(make_problem(config)));
+  EXPECT_FALSE(finished.has(make_problem(of_other_table)));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "interface/friction/slip_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "motion/state_by_node.hpp"
-#include "run/choices.hpp"
+#include "problem/problem.hpp"
 #include "run/needs.hpp"
 #include "run/snapshot_mesh.hpp"
 #include "run/subdomains.hpp"
@@ -17,6 +17,7 @@
 namespace slipfront::run {
 namespace {
 
+using problem::make_problem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -50,11 +51,11 @@ input::Case one_body() {
 
 TEST(LargePlate, NeedsSeveralProcesses) {
   const auto config = one_body();
-  EXPECT_TRUE(input::can_be_held_in_parts(config));
+  EXPECT_TRUE(can_be_held_in_parts(make_problem(config)));
   const auto one = AllOf(HasSubstr("plate.element_size_m is 0.001 m"), HasSubstr("1e+10 nodes"),
                          HasSubstr("one rank can number; use more ranks"));
   const auto info_error = [&](const auto&... sharing) {
-    return test::error_of([&] { info(config, sharing...); });
+    return test::error_of([&] { info(make_problem(config), sharing...); });
   };
   EXPECT_THAT(test::check_error(config), one);
   EXPECT_THAT(info_error(), one);
@@ -69,11 +70,11 @@ TEST(LargePlate, NeedsSeveralProcesses) {
   graded.plate.coarsenings = 1;
   rounded.plate.corner = mesh::Corner::fillet;
   tilted.loading.method = statics::LoadingMethod::direct;
-  for (const auto& other : {graded, rounded, tilted}) EXPECT_FALSE(input::can_be_held_in_parts(other));
+  for (const auto& other : {graded, rounded, tilted}) EXPECT_FALSE(can_be_held_in_parts(make_problem(other)));
 }
 
 TEST(LargePlate, InfoCountsItsNodes) {
-  const auto info = run::info(two_bodies(), 10000);
+  const auto info = run::info(make_problem(two_bodies()), 10000);
   EXPECT_EQ(info.n_nodes, 2 * n_columns * of_column);
   EXPECT_EQ(info.n_cells, 2 * (n_columns - 1) * (of_column - 1));
   EXPECT_EQ(info.n_interface, n_columns);
@@ -88,16 +89,16 @@ TEST(LargePlate, InfoCountsItsNodes) {
 }
 
 TEST(LargePlate, APartAtTheFarEndIsThatOfTheWhole) {
-  const auto config = two_bodies();
-  const auto meshes = check_interfaces(config);
+  const auto problem = make_problem(two_bodies());
+  const auto meshes = check_interfaces(problem);
   EXPECT_EQ(n_nodes_of(meshes.plate), n_columns * of_column);
-  const GlobalBodies whole(config, meshes.plate, meshes.base);
+  const GlobalBodies whole(problem, meshes.plate, meshes.base);
   const solid::Span columns = {static_cast<int>(n_columns) - 6, static_cast<int>(n_columns)};
-  auto part = make_isolated_subdomain(config, meshes.plate, whole.steps(), columns);
+  auto part = make_isolated_subdomain(problem, meshes.plate, whole.steps(), columns);
   const auto& body = part.stepper->bodies().back().columns();
   EXPECT_EQ(body.n_nodes(), 6 * of_column);
   EXPECT_EQ(body.global_number(body.n_nodes() - 1), n_columns * of_column - 1);
-  EXPECT_EQ(part.plate.x_m.back(), config.plate.width_m);
+  EXPECT_EQ(part.plate.x_m.back(), problem.above().plate.width_m);
 
   // What it keeps goes back to it by its numbers.
   const auto all = mesh::Subset({{columns.begin, columns.end}});
@@ -121,8 +122,8 @@ TEST(LargePlate, ProbesHaveTheNumbersOfTheWhole) {
   auto config = two_bodies();
   config.probes.x_m = {141.4205, 0.0005, 141.421};
   config.probes.y_m = {70.7095, -70.7095, 0};
-  const auto meshes = check_interfaces(config);
-  const auto probes = probes_of(config, meshes.plate, meshes.base);
+  const auto meshes = check_interfaces(make_problem(config));
+  const auto probes = probes_of(make_problem(config), meshes.plate, meshes.base);
   ASSERT_EQ(probes.size(), 3U);
   const auto corner = (of_column - 2) * n_columns;
   const auto cell_at = [](std::int64_t n) { return std::array{n, n + 1, n + 1 + n_columns, n + n_columns}; };
@@ -134,7 +135,7 @@ TEST(LargePlate, ProbesHaveTheNumbersOfTheWhole) {
 
 TEST(LargePlate, SnapshotsHaveNumbersOf64Bits) {
   const auto config = two_bodies();
-  const auto [slabs, n_plate_cells] = snapshot_mesh_in_rows(config, 1000);
+  const auto [slabs, n_plate_cells] = snapshot_mesh_in_rows(make_problem(config), 1000);
   EXPECT_EQ(slabs.n_nodes, 2U * n_columns * of_column);
   EXPECT_EQ(slabs.n_cells, 2U * (n_columns - 1) * (of_column - 1));
   EXPECT_EQ(n_plate_cells, slabs.n_cells / 2);

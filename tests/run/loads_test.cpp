@@ -14,6 +14,7 @@ namespace slipfront::run {
 namespace {
 
 using interface::EventKind;
+using problem::make_problem;
 using statics::Contact;
 using test::error_of;
 using test::go_on;
@@ -114,7 +115,7 @@ TEST(Loads, TheInterfaceBearsTheForcesThatAreAsked) {
   for (const auto& row : loads_of_rows) {
     SCOPED_TRACE(row.name);
     const auto c = case_of(row);
-    const auto initial = make_initial_state(c, go_on);
+    const auto initial = make_initial_state(make_problem(c), go_on);
     ASSERT_TRUE(initial.loads);
     const auto& loads = *initial.loads;
     const auto before = compressed(c, initial);
@@ -142,20 +143,21 @@ TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
   for (const auto& row : loads_of_rows) {
     SCOPED_TRACE(row.name);
     const auto c = case_of(row);
-    const auto expected = make_initial_state(c, go_on);
+    const auto expected = make_initial_state(make_problem(c), go_on);
     const auto& loads = *expected.loads;
     auto forces = c;
     forces.loading.mean_pressure_Pa = forces.loading.shear_over_critical = {};
     forces.loading.normal_force_N_per_m = loads.normal_force_N_per_m;
     forces.loading.shear_force_N_per_m = loads.shear_force_N_per_m;
-    expect_same_state(make_initial_state(forces, go_on).subcritical, expected.subcritical, row.tolerance);
+    expect_same_state(make_initial_state(make_problem(forces), go_on).subcritical, expected.subcritical,
+                      row.tolerance);
     // By the displacements that were found.
     auto displaced = forces;
     displaced.loading.normal_force_N_per_m = {};
     displaced.loading.tilt_left_m = loads.tilt_left_m;
     displaced.loading.tilt_right_m = loads.tilt_right_m;
     expect_same_state(compressed(displaced, expected), compressed(c, expected), row.tolerance);
-    const auto by_displacements = make_initial_state(displaced, go_on);
+    const auto by_displacements = make_initial_state(make_problem(displaced), go_on);
     expect_same_state(by_displacements.subcritical, expected.subcritical, row.tolerance);
     EXPECT_NEAR(by_displacements.critical_shear_m, expected.critical_shear_m,
                 row.tolerance * expected.critical_shear_m);
@@ -167,21 +169,22 @@ TEST(Loads, SolversFindTheSame) {
     if (row.tolerance < 1e-8) continue;  // those of a factorisation
     SCOPED_TRACE(row.name);
     auto c = case_of(row);
-    const auto iterative = make_initial_state(c, go_on);
+    const auto iterative = make_initial_state(make_problem(c), go_on);
     c.loading.solver = statics::StaticSolver::direct;
-    expect_same_state(iterative.subcritical, make_initial_state(c, go_on).subcritical, row.tolerance);
+    expect_same_state(iterative.subcritical, make_initial_state(make_problem(c), go_on).subcritical,
+                      row.tolerance);
   }
 }
 
 TEST(Loads, TheWholeCriticalOneIsThatOfTheMargin) {
   auto c = case_of(loads_of_rows[2]);
   c.loading.shear_over_critical = 1;
-  const auto whole = make_initial_state(c, go_on);
+  const auto whole = make_initial_state(make_problem(c), go_on);
   EXPECT_NEAR(whole.subcritical.shear_m, whole.critical_shear_m, 1e-9 * whole.critical_shear_m);
   EXPECT_NEAR(whole.subcritical.peak_ratio, test::law(c).mu_s, 1e-9);
   // t/p at the peak grows with the shear up to it.
   c.loading.shear_over_critical = {};
-  const auto below = make_initial_state(c, go_on);
+  const auto below = make_initial_state(make_problem(c), go_on);
   EXPECT_EQ(below.critical_shear_m, whole.critical_shear_m);
   EXPECT_NEAR(below.subcritical.peak_ratio, (1 - c.loading.critical_margin) * test::law(c).mu_s, 1e-9);
   EXPECT_LT(below.subcritical.shear_m, whole.subcritical.shear_m);
@@ -191,7 +194,7 @@ TEST(Loads, LevelCompressionOfAColumnIsUniform) {
   // Without Poisson's effect the stress is uniform, p = u E/H.
   auto c = case_of(loads_of_rows[0]);
   c.material.poissons_ratio = 0;
-  const auto initial = make_initial_state(c, go_on);
+  const auto initial = make_initial_state(make_problem(c), go_on);
   const double u_m = p_Pa * c.plate.height_m / c.material.youngs_modulus_Pa;
   EXPECT_NEAR(initial.loads->tilt_left_m, u_m, 1e-12 * u_m);
   EXPECT_NEAR(initial.loads->tilt_right_m, u_m, 1e-12 * u_m);
@@ -203,7 +206,7 @@ TEST(Loads, WhatNoShearGivesIsRefused) {
     c.loading.shear_over_critical = {};
     c.loading.shear_force_N_per_m = shear_N_per_m;
     c.loading.tilt_difference_m = tilt_difference_m;
-    return error_of([&] { make_initial_state(c, go_on); });
+    return error_of([&] { make_initial_state(make_problem(c), go_on); });
   };
   EXPECT_THAT(refusal_of(1e7, 0),
               HasSubstr("loading.shear_force_N_per_m is 10000000 N/m, beyond the critical"));
@@ -213,7 +216,7 @@ TEST(Loads, WhatNoShearGivesIsRefused) {
 TEST(Loads, ARampBeginsUnderTheForce) {
   auto c = test::ramped_case();
   c.loading.mean_pressure_Pa = p_Pa;
-  const auto initial = make_initial_state(c, go_on);
+  const auto initial = make_initial_state(make_problem(c), go_on);
   ASSERT_TRUE(initial.loads && initial.ramp);
   EXPECT_NEAR(initial.loads->mean_pressure_Pa, p_Pa, 1e-9 * p_Pa);
   EXPECT_EQ(initial.loads->shear_m, initial.subcritical.shear_m);
@@ -221,14 +224,14 @@ TEST(Loads, ARampBeginsUnderTheForce) {
 
 TEST(Loads, AreThoseOfInfoAndOfNoOtherCase) {
   auto c = case_of(loads_of_rows[2]);
-  const auto expected = *make_initial_state(c, go_on).loads;
-  const auto found = info(c).loads;
+  const auto expected = *make_initial_state(make_problem(c), go_on).loads;
+  const auto found = info(make_problem(c)).loads;
   ASSERT_TRUE(found);
   EXPECT_EQ(found->tilt_left_m, expected.tilt_left_m);
   EXPECT_EQ(found->shear_m, expected.shear_m);
   EXPECT_EQ(found->critical_shear_force_N_per_m, expected.critical_shear_force_N_per_m);
-  EXPECT_FALSE(info(test::coarse_case()).loads);
-  EXPECT_FALSE(make_initial_state(test::coarse_case(), go_on).loads);
+  EXPECT_FALSE(info(make_problem(test::coarse_case())).loads);
+  EXPECT_FALSE(make_initial_state(make_problem(test::coarse_case()), go_on).loads);
 }
 
 TEST(Loads, EventsShareTheStateOfTheirForces) {
@@ -237,9 +240,9 @@ TEST(Loads, EventsShareTheStateOfTheirForces) {
   right.event = EventKind::right;
   sheared.loading.shear_over_critical = 0.8;
   pressed.loading.mean_pressure_Pa = 4e6;
-  EXPECT_EQ(initial_state_key(right), initial_state_key(c));
-  EXPECT_NE(initial_state_key(sheared), initial_state_key(c));
-  EXPECT_NE(initial_state_key(pressed), initial_state_key(c));
+  EXPECT_EQ(make_problem(right).source.state_key, make_problem(c).source.state_key);
+  EXPECT_NE(make_problem(sheared).source.state_key, make_problem(c).source.state_key);
+  EXPECT_NE(make_problem(pressed).source.state_key, make_problem(c).source.state_key);
 }
 
 }  // namespace

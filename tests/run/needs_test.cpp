@@ -10,6 +10,7 @@
 namespace slipfront::run {
 namespace {
 
+using problem::make_problem;
 using test::coarse_case;
 using test::error_of;
 using test::go_on;
@@ -17,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 Needs needs_of(const input::Case& config) {
-  return needs(config, estimated_size(config));
+  return needs(make_problem(config), estimated_size(make_problem(config)));
 }
 
 TEST(Needs, DiskIsWhatTheFilesTake) {
@@ -28,8 +29,8 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
   config.output.history_interval_s = 2e-6;
   config.output.snapshot_times_s = {0, 10e-6, 20e-6, 30e-6, 40e-6};
   const test::TemporaryFolder folder;
-  const auto initial = make_initial_state(config, go_on);
-  write(folder.path(), run_from(config, initial, go_on), initial);
+  const auto initial = make_initial_state(make_problem(config), go_on);
+  write(folder.path(), run_from(make_problem(config), initial, go_on), initial);
   const auto size_of = [&](const char* name) {
     return static_cast<double>(std::filesystem::file_size(folder / name));
   };
@@ -41,7 +42,7 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
 
 TEST(Needs, EstimatesAgreeWithTheMesh) {
   auto config = coarse_case(interface::EventKind::spontaneous, 1e-3);
-  const auto exact = info(config).needs, estimated = needs_of(config);
+  const auto exact = info(make_problem(config)).needs, estimated = needs_of(config);
   EXPECT_NEAR(estimated.memory_bytes() / exact.memory_bytes(), 1, 0.3);
   EXPECT_NEAR(static_cast<double>(estimated.steps) / static_cast<double>(exact.steps), 1, 0.3);
   EXPECT_NEAR(estimated.history_bytes / exact.history_bytes, 1, 0.3);
@@ -52,10 +53,12 @@ TEST(Needs, EstimatesAgreeWithTheMesh) {
 
 TEST(Needs, OfOneAmongManyIsItsPart) {
   const auto config = coarse_case(interface::EventKind::left, 0.5e-3);
-  const auto size = estimated_size(config);
-  const auto of = [&](const Holder& holder) { return needs(config, size, holder).memory_bytes(); };
+  const auto size = estimated_size(make_problem(config));
+  const auto of = [&](const Holder& holder) {
+    return needs(make_problem(config), size, holder).memory_bytes();
+  };
   EXPECT_LT(of({4, 1, false}), 0.5 * of({}));
-  EXPECT_GT(of({4, 1, true}), needs(config, size).statics_bytes);  // which it solves alone
+  EXPECT_GT(of({4, 1, true}), needs(make_problem(config), size).statics_bytes);  // which it solves alone
   EXPECT_GT(of({4, 4, true}), of({4, 1, true}));
 }
 
@@ -68,12 +71,12 @@ TEST(Needs, CountTheStateOfAFrictionLaw) {
 
 TEST(Info, OfRanksIsOfTheirSubdomains) {
   const auto config = coarse_case(interface::EventKind::left, 1e-3);
-  const auto one = *info(config, 1).shared, three = *info(config, 3).shared;
+  const auto one = *info(make_problem(config), 1).shared, three = *info(make_problem(config), 3).shared;
   EXPECT_EQ(three.partition.n_subdomains(), 3);
   EXPECT_LT(three.memory_bytes, three.root_memory_bytes);
   EXPECT_LT(three.efficiency, one.efficiency);
   EXPECT_GT(three.bytes_per_step, 0);
-  EXPECT_THROW(info(config, 1000), UserError);
+  EXPECT_THROW(info(make_problem(config), 1000), UserError);
 }
 
 TEST(Needs, CountTheStepsOfTheRamp) {
@@ -81,8 +84,9 @@ TEST(Needs, CountTheStepsOfTheRamp) {
   EXPECT_EQ(needs_of(config).ramp_steps, 0);
   config.loading.method = statics::LoadingMethod::ramp;
   config.loading.shear_speed_over_c_L = 3e-6;
-  const auto predicted = static_cast<double>(info(config).needs.ramp_steps);
-  EXPECT_NEAR(predicted / static_cast<double>(make_initial_state(config, go_on).ramp->steps), 1, 0.3);
+  const auto predicted = static_cast<double>(info(make_problem(config)).needs.ramp_steps);
+  EXPECT_NEAR(predicted / static_cast<double>(make_initial_state(make_problem(config), go_on).ramp->steps), 1,
+              0.3);
 }
 
 TEST(Needs, RefuseStepsBeyondCounting) {
@@ -93,8 +97,9 @@ TEST(Needs, RefuseStepsBeyondCounting) {
   config.loading.method = statics::LoadingMethod::ramp;
   for (const double speed : {1e-20, 1e-300}) {
     config.loading.shear_speed_over_c_L = speed;
-    EXPECT_THAT(error_of([&] { info(config); }), HasSubstr("loading.shear_speed_over_c_L = 1e-"));
-    EXPECT_THAT(error_of([&] { make_initial_state(config, go_on); }),
+    EXPECT_THAT(error_of([&] { info(make_problem(config)); }),
+                HasSubstr("loading.shear_speed_over_c_L = 1e-"));
+    EXPECT_THAT(error_of([&] { make_initial_state(make_problem(config), go_on); }),
                 HasSubstr("loading.shear_speed_over_c_L"));
   }
 }
@@ -102,7 +107,7 @@ TEST(Needs, RefuseStepsBeyondCounting) {
 TEST(RequireFit, NamesWhatToChange) {
   const test::TemporaryFolder folder;
   const auto message = [&](const input::Case& config) {
-    return error_of([&] { require_fit(config, folder / "to be/made"); });
+    return error_of([&] { require_fit(make_problem(config), folder / "to be/made"); });
   };
   auto config = coarse_case();
   EXPECT_EQ(message(config), test::accepted);

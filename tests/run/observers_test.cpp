@@ -16,6 +16,7 @@
 namespace slipfront::run {
 namespace {
 
+using problem::make_problem;
 using test::coarse_case;
 using ::testing::HasSubstr;
 
@@ -27,12 +28,12 @@ motion::Observers list_of(std::unique_ptr<motion::Observer> observer) {
 
 TEST(Observers, TheExampleEndsAnEventAtASlip) {
   const auto config = coarse_case();
-  const auto initial = make_initial_state(config, test::go_on);
-  const auto whole = run_from(config, initial, test::go_on);
+  const auto initial = make_initial_state(make_problem(config), test::go_on);
+  const auto whole = run_from(make_problem(config), initial, test::go_on);
   const auto& slip_m = whole.event.history.slip_m;
   const double limit_m = 0.5 * *std::ranges::max_element(slip_m);
   const auto result =
-      run_from(config, initial, test::go_on, {},
+      run_from(make_problem(config), initial, test::go_on, {},
                list_of(std::make_unique<SlipLimit>(limit_m, config.output.history_interval_s)));
   EXPECT_EQ(result.event.end, motion::EventEnd::observer);
   EXPECT_THAT(end_of_event(result), HasSubstr("slip has reached"));
@@ -88,7 +89,8 @@ TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
     results::ResultFolder folder(dir, run_work);
     auto options = test::with_threads(2);
     options.observers = observers;
-    return goes_on ? resume(folder, nullptr, options, hooks) : run_into(folder, config, options, hooks);
+    return goes_on ? resume(folder, nullptr, options, hooks)
+                   : run_into(folder, make_problem(config), options, hooks);
   };
   const test::TemporaryFolder plain, observed;
   const auto expected = run(plain.path(), test::undisturbed, false, {});
@@ -119,7 +121,7 @@ TEST(Observers, ACheckpointIsOfTheObserversThatKeptIt) {
   options.observers = [&] { return list_of(std::make_unique<Counter>(seen)); };
   const auto hooks = test::stopping_at("event", 50);
   results::ResultFolder folder(dir.path(), run_work);
-  run_into(folder, config, options, hooks);
+  run_into(folder, make_problem(config), options, hooks);
   options.observers = {};
   EXPECT_THAT(test::error_of([&] { resume(folder, nullptr, options, hooks); }),
               HasSubstr("has observers of"));

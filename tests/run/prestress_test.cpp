@@ -24,6 +24,7 @@ namespace {
 
 using interface::EventKind;
 using interface::NucleationForm;
+using problem::make_problem;
 using test::check_error;
 using test::go_on;
 using test::run_case;
@@ -146,7 +147,7 @@ TEST(PrestressColumn, TwoOfTractionSlipRateAndStateGiveTheThird) {
   c.prestress.p_Pa = 5e6;
   const auto t_s = [&] {
     c.friction = law;
-    return make_initial_state(c, go_on).subcritical.tractions.t_s_Pa.front();
+    return make_initial_state(make_problem(c), go_on).subcritical.tractions.t_s_Pa.front();
   };
   EXPECT_DOUBLE_EQ(t_s(), 5e6 * (0.6 - 0.008 * std::log(1e-3)));  // steady sliding at 1e-9 m/s
   // Problem R-A: theta_i = 0.159228803985 s at 1e-9 m/s is tau = 2.65 MPa.
@@ -224,12 +225,12 @@ TEST(Nucleation, OverstressIsAnExternalForceWithTheTriggersRamp) {
 TEST(Nucleation, StartsAnEventOfTheTiltedPlateToo) {
   auto c = test::coarse_case(EventKind::nucleation);
   c.nucleation = {.x_m = 0.1, .half_length_m = 5e-3, .taper_m = 5e-3};
-  const auto initial = make_initial_state(c, go_on);
-  const auto result = run_from(c, initial, go_on);
+  const auto initial = make_initial_state(make_problem(c), go_on);
+  const auto result = run_from(make_problem(c), initial, go_on);
   EXPECT_FALSE(result.event.record.onsets.empty());
   c.event = EventKind::none;
   c.time.end_s = result.event.time_s;
-  const auto nothing = run_from(c, initial, go_on);
+  const auto nothing = run_from(make_problem(c), initial, go_on);
   EXPECT_LT(nothing.event.record.onsets.size(), result.event.record.onsets.size());
 }
 
@@ -239,7 +240,7 @@ TEST(Nucleation, ExcludedZoneOfAPatchAtThePeriodicEdge) {
   c.event = EventKind::nucleation;
   c.nucleation = {.x_m = 0.01, .half_length_m = 5e-3, .taper_m = 5e-3};
   c.fronts.trigger_margin_m = 10e-3;
-  const auto options = front_options(c, make_initial_state(c, go_on));
+  const auto options = front_options(make_problem(c), make_initial_state(make_problem(c), go_on));
   for (const double x : {0.0, 0.029, 0.091, 0.099}) EXPECT_TRUE(fronts::is_excluded(options, x)) << x;
   for (const double x : {0.031, 0.05, 0.089}) EXPECT_FALSE(fronts::is_excluded(options, x)) << x;
   for (const double x : {0.0, 0.02, 0.1}) EXPECT_TRUE(fronts::is_driven(options, x)) << x;
@@ -353,23 +354,23 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
   test::write_file(file, "x_m,t_Pa,p_Pa\n0,1e5,1e6\n4e-3,3e5,2e6\n");
   c.prestress.file = file.string();
   c.prestress.table = input::read_prestress(file);
-  const auto key = initial_state_key(c);
-  const auto state = make_initial_state(c, go_on);
+  const auto key = make_problem(c).source.state_key;
+  const auto state = make_initial_state(make_problem(c), go_on);
   EXPECT_TRUE(state.prescribed);
   EXPECT_DOUBLE_EQ(state.subcritical.tractions.t_s_Pa[1], 1.5e5);
   EXPECT_DOUBLE_EQ(state.subcritical.tractions.p_s_Pa[3], 1.75e6);
   EXPECT_DOUBLE_EQ(state.subcritical.peak_ratio, 0.15);
   c.prestress.file.clear();
   c.prestress.t_Pa = 0;
-  EXPECT_NE(initial_state_key(c), key);
-  const auto uniform = initial_state_key(c);
+  EXPECT_NE(make_problem(c).source.state_key, key);
+  const auto uniform = make_problem(c).source.state_key;
   c.prestress.t_Pa = 1;
-  EXPECT_NE(initial_state_key(c), uniform);
+  EXPECT_NE(make_problem(c).source.state_key, uniform);
   // What no prescribed state depends on.
   c.prestress.t_Pa = 0;
   c.friction = interface::Coulomb { 0.1 };
   c.time.step_factor = 0.5;
-  EXPECT_EQ(initial_state_key(c), uniform);
+  EXPECT_EQ(make_problem(c).source.state_key, uniform);
 }
 
 }  // namespace

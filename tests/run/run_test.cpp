@@ -26,6 +26,7 @@ namespace slipfront::run {
 namespace {
 
 using interface::EventKind;
+using problem::make_problem;
 using test::coarse_case;
 using test::go_on;
 using test::law;
@@ -34,13 +35,13 @@ using test::law;
 constexpr double solve_error = 1e-9;
 
 const InitialState& coarse_state() {
-  static const InitialState initial = make_initial_state(coarse_case(), go_on);
+  static const InitialState initial = make_initial_state(make_problem(coarse_case()), go_on);
   return initial;
 }
 
 /// A run from the coarse state.
 Result run(const input::Case& config) {
-  return run_from(config, coarse_state(), go_on);
+  return run_from(make_problem(config), coarse_state(), go_on);
 }
 
 /// The same bits, so that an undefined value equals itself.
@@ -90,7 +91,7 @@ TEST(InitialState, IsAtItsRatioOrRefused) {
     law(config).mu_k = 0.1;
     config.loading.critical_margin = margin;
     try {
-      const auto initial = make_initial_state(config, go_on);
+      const auto initial = make_initial_state(make_problem(config), go_on);
       EXPECT_NEAR(initial.subcritical.peak_ratio, (1 - margin) * mu_s, mu_s * solve_error);
       EXPECT_NEAR(initial.supercritical.peak_ratio, (1 + margin) * mu_s, mu_s * solve_error);
       EXPECT_LT(initial.subcritical.shear_m, initial.supercritical.shear_m);
@@ -113,9 +114,9 @@ TEST(InitialState, IsAtItsRatioOrRefused) {
 TEST(InitialState, NeedsContactAndAnInside) {
   auto margin = coarse_case(), tilt = coarse_case();
   margin.loading.edge_margin_m = 0.12;
-  EXPECT_THROW(make_initial_state(margin, go_on), UserError);
+  EXPECT_THROW(make_initial_state(make_problem(margin), go_on), UserError);
   tilt.loading.tilt_left_m = tilt.loading.tilt_right_m = 0;
-  EXPECT_THROW(make_initial_state(tilt, go_on), UserError);
+  EXPECT_THROW(make_initial_state(make_problem(tilt), go_on), UserError);
 }
 
 using Change = std::pair<const char*, void (*)(input::Case&)>;
@@ -125,7 +126,8 @@ void expect_keys(const input::Case& config, std::span<const Change> changes, boo
   for (const auto& [what, make] : changes) {
     auto changed = config;
     make(changed);
-    EXPECT_EQ(initial_state_key(changed) != initial_state_key(config), differ) << what;
+    EXPECT_EQ(make_problem(changed).source.state_key != make_problem(config).source.state_key, differ)
+        << what;
   }
 }
 
@@ -182,8 +184,8 @@ TEST(InitialStateKey, EqualKeysMeanEqualStates) {
   config.material.density_kg_per_m3 = 2400;
   config.material.stiffness_damping_s = 1e-6;
   law(config).mu_k = 1.0;
-  ASSERT_EQ(initial_state_key(config), initial_state_key(coarse_case()));
-  const auto other = make_initial_state(config, go_on);
+  ASSERT_EQ(make_problem(config).source.state_key, make_problem(coarse_case()).source.state_key);
+  const auto other = make_initial_state(make_problem(config), go_on);
   EXPECT_TRUE(same_bits(other.subcritical.u_m, coarse_state().subcritical.u_m));
   EXPECT_TRUE(same_bits(other.supercritical.u_m, coarse_state().supercritical.u_m));
   EXPECT_TRUE(same_bits(other.subcritical.tractions.t_s_Pa, coarse_state().subcritical.tractions.t_s_Pa));
@@ -192,8 +194,8 @@ TEST(InitialStateKey, EqualKeysMeanEqualStates) {
 
 TEST(Event, SpontaneousFrontsRunBothWaysFromThePeak) {
   const auto config = coarse_case(EventKind::spontaneous, 2e-3);
-  const auto initial = make_initial_state(config, go_on);
-  const auto result = run_from(config, initial, go_on);
+  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto result = run_from(make_problem(config), initial, go_on);
   ASSERT_FALSE(result.event.record.onsets.empty());
   const auto& state = initial.supercritical;
   for (const int direction : {-1, 1}) {
@@ -287,7 +289,7 @@ TEST(FrontOptions, KnowTheTriggerZone) {
        {std::pair{EventKind::spontaneous, 0}, {EventKind::left, 3}, {EventKind::right, 3}}) {
     const auto config = coarse_case(kind);
     const auto& initial = coarse_state();
-    const auto options = front_options(config, initial);
+    const auto options = front_options(make_problem(config), initial);
     EXPECT_EQ(options.driven.size(), n == 0 ? 0U : 1U);
     const auto forces =
         motion::trigger_forces(initial.subcritical, initial.tributary_m, kind, config.trigger, 1.3);
@@ -302,9 +304,9 @@ TEST(Info, AgreesWithTheRun) {
     auto config = coarse_case();
     config.plate.corner = corner;
     config.time.quiet_s = std::numeric_limits<double>::infinity();  // to the end
-    const auto info = run::info(config);
-    const auto initial = make_initial_state(config, go_on);
-    const auto result = run_from(config, initial, go_on);
+    const auto info = run::info(make_problem(config));
+    const auto initial = make_initial_state(make_problem(config), go_on);
+    const auto result = run_from(make_problem(config), initial, go_on);
     EXPECT_EQ(result.event.end, motion::EventEnd::end_time);
     EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
     EXPECT_EQ(info.n_cells, std::ssize(initial.mesh.cells));
@@ -337,9 +339,9 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
   config.nucleation.x_m = 0.1;
   const double before = allocated_bytes();
   if (before == 0) GTEST_SKIP() << "the allocator does not tell";
-  auto initial = make_initial_state(config, go_on);
+  auto initial = make_initial_state(make_problem(config), go_on);
   const auto n = static_cast<double>(initial.n_nodes);
-  const auto stepper = start_event(config, initial);
+  const auto stepper = start_event(make_problem(config), initial);
   const double held = allocated_bytes() - before;
   // Mass, u, v: 40 bytes a node, and less than four for the levels. Besides, own stencils of the
   // sides and block rows of the loaded edge, once of the plate and once of a level: 9 blocks of 36 bytes
@@ -355,7 +357,8 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
 TEST(Ramp, ReachesTheDirectCriticalShear) {
   const auto config = test::ramped_case();
   std::int64_t asked = 0;
-  const auto initial = make_initial_state(config, [&](std::int64_t, std::int64_t) { return ++asked > 0; });
+  const auto initial =
+      make_initial_state(make_problem(config), [&](std::int64_t, std::int64_t) { return ++asked > 0; });
   ASSERT_TRUE(initial.ramp.has_value());
   EXPECT_GT(asked, 0);
   EXPECT_GT(initial.ramp->steps, 10000);
@@ -366,8 +369,8 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   EXPECT_LT(initial.subcritical.peak_ratio, 1.3);
   EXPECT_GE(initial.supercritical.peak_ratio, (1 - motion::ramp_handover) * 1.3);
 
-  const auto result = run_from(config, initial, go_on);
-  const auto direct = make_initial_state(coarse_case(EventKind::spontaneous, 5e-3), go_on);
+  const auto result = run_from(make_problem(config), initial, go_on);
+  const auto direct = make_initial_state(make_problem(coarse_case(EventKind::spontaneous, 5e-3)), go_on);
   EXPECT_EQ(direct.critical_shear_m, initial.critical_shear_m);
   EXPECT_EQ(direct.subcritical.peak_x_m, initial.subcritical.peak_x_m);
   for (const int direction : {-1, 1}) {
@@ -385,7 +388,7 @@ TEST(PlainStepper, RunsACaseAsTheFastOneDoes) {
   const auto fast = test::run_case(config);
   EXPECT_GT(fast.event.record.onsets.size(), 20U);
   config.time.stepper = motion::StepperKind::plain;
-  EXPECT_GT(info(config).expected_s, 0);
+  EXPECT_GT(info(make_problem(config)).expected_s, 0);
   const auto plain = test::run_case(config);
   EXPECT_EQ(plain.event.steps, fast.event.steps);
   EXPECT_EQ(plain.node_updates_per_step, fast.node_updates_per_step);

@@ -13,17 +13,20 @@
 
 #include "boundary/pusher.hpp"
 #include "cases.hpp"
-#include "input/friction_along_x.hpp"
 #include "interface/friction/rate_and_state.hpp"
 #include "interface/friction/slip_weakening.hpp"
+#include "problem/contact.hpp"
+#include "problem/problem.hpp"
 #include "results/folder.hpp"
-#include "run/choices.hpp"
 #include "run/sequence_session.hpp"
 #include "sessions.hpp"
 
 namespace slipfront::run {
 namespace {
 
+using problem::friction_at;
+using problem::inertia_slip_rate_m_per_s;
+using problem::make_problem;
 namespace fs = std::filesystem;
 using record::LoadingPhase;
 using record::LoadingRow;
@@ -75,7 +78,7 @@ input::Case pushed_block(int max_events) {
 /// Computes the next event. @return the state in which it began
 const InitialState* run_next(Sequence& sequence, const input::Case& config) {
   const auto* initial = sequence.next();
-  if (initial != nullptr) sequence.record_event(run_from(config, *initial, test::go_on));
+  if (initial != nullptr) sequence.record_event(run_from(make_problem(config), *initial, test::go_on));
   return initial;
 }
 
@@ -107,7 +110,7 @@ TEST(Sequence, EnergiesOfAllPhasesBalance) {
   auto config = sequence_case(6);
   config.time.interface_substeps =
       1;  // energies of sub-cycled motion are bounded from below but for coupling
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   run_all(sequence, config);
   const auto& rows = sequence.loading();
   ASSERT_EQ(rows.size(), 1 + 3 * 6);
@@ -129,9 +132,9 @@ TEST(Sequence, EquilibriumCarriesTheTractionsWithWhichADampedEventComesToRest) {
   double off_before = infinity;
   for (const double quiet_s : {2e-3, 8e-3}) {
     config.time.quiet_s = quiet_s;
-    Sequence sequence(config, test::go_on);
+    Sequence sequence(make_problem(config), test::go_on);
     const auto* initial = sequence.next();
-    const auto result = run_from(config, *initial, test::go_on);
+    const auto result = run_from(make_problem(config), *initial, test::go_on);
     sequence.record_event(result);
     const auto& ends = sequence.loading()[2];
     const auto& rests = sequence.loading()[3];
@@ -147,7 +150,7 @@ TEST(Sequence, IsTheSameWhateverRowsAreWritten) {
   std::vector<std::vector<record::SequenceEvent>> events;
   for (const double interval_s : {0.5e-6, 50e-6}) {
     config.output.history_interval_s = interval_s;
-    Sequence sequence(config, test::go_on);
+    Sequence sequence(make_problem(config), test::go_on);
     while (sequence.end().empty()) run_next(sequence, config);
     events.push_back(sequence.events());
   }
@@ -162,7 +165,7 @@ TEST(Sequence, IsTheSameWhateverRowsAreWritten) {
 
 TEST(Sequence, EventsBeginWhereInsideOneNodeReachesTheStrengthAndTheOthersStick) {
   const auto config = sequence_case(12, 1.0);
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
     ASSERT_NE(initial, nullptr);
@@ -172,14 +175,14 @@ TEST(Sequence, EventsBeginWhereInsideOneNodeReachesTheStrengthAndTheOthersStick)
       if (!state.is_inside(state.tractions.x_m[k])) continue;
       EXPECT_EQ(state.contact[k], statics::Contact::stick) << k;
     }
-    sequence.record_event(run_from(config, *initial, test::go_on));
+    sequence.record_event(run_from(make_problem(config), *initial, test::go_on));
   }
 }
 
 TEST(Sequence, EndsByGlobalSliding) {
   auto config = sequence_case(20);
   config.sequence.to_global_sliding = true;
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   run_all(sequence, config);
   const auto& events = sequence.events();
   ASSERT_LT(events.size(), 20U);
@@ -190,12 +193,12 @@ TEST(Sequence, EndsByGlobalSliding) {
 
 TEST(Sequence, LoadsToTheTimeAtWhichItEnds) {
   auto config = sequence_case(20);
-  Sequence unlimited(config, test::go_on);
+  Sequence unlimited(make_problem(config), test::go_on);
   run_next(unlimited, config);
   unlimited.next();
   const double second_s = unlimited.loading().back().time_s;
   config.sequence.end_s = second_s - 1;
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   EXPECT_NE(run_next(sequence, config), nullptr);
   EXPECT_EQ(run_next(sequence, config), nullptr);
   const auto& last = sequence.loading().back();
@@ -206,10 +209,10 @@ TEST(Sequence, LoadsToTheTimeAtWhichItEnds) {
 
 TEST(Sequence, RowsOfEventsTellWhatSlipped) {
   const auto config = sequence_case(4, 1.0);
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
-    const auto result = run_from(config, *initial, test::go_on);
+    const auto result = run_from(make_problem(config), *initial, test::go_on);
     sequence.record_event(result);
     const auto& e = sequence.events().back();
     const auto& before = sequence.loading().end()[-3];
@@ -229,7 +232,7 @@ TEST(Sequence, RowsOfEventsTellWhatSlipped) {
     EXPECT_TRUE(initial->subcritical.is_inside(e.begin_x_m));
     EXPECT_EQ(e.friction_before, before.shear_force_N_per_m / before.normal_force_N_per_m);
     EXPECT_EQ(e.friction_after, after.shear_force_N_per_m / after.normal_force_N_per_m);
-    EXPECT_NEAR(e.begin_s, e.shear_m / top_speed_m_per_s(config), 1e-12 * e.begin_s);
+    EXPECT_NEAR(e.begin_s, e.shear_m / make_problem(config).shear_speed_m_per_s, 1e-12 * e.begin_s);
     EXPECT_GT(e.stress_drop_Pa, 0);
   }
 }
@@ -238,12 +241,12 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
   auto config = pushed_block(200);
   config.machine = {.pusher = config.machine.pusher};  // that does not yield
   config.sequence.to_global_sliding = true;
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
     auto with_fields = config;
     with_fields.output.snapshot_times_s = {1e-5, 3e-5};
-    const auto result = run_from(with_fields, *initial, test::go_on);
+    const auto result = run_from(make_problem(with_fields), *initial, test::go_on);
     sequence.record_event(result);
     ASSERT_FALSE(result.event.snapshots.empty());
     for (const auto& snapshot : result.event.snapshots) {
@@ -272,7 +275,7 @@ TEST(Sequence, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
   for (const int substeps : {1, 6}) {
     auto config = pushed_block(6);
     config.time.interface_substeps = substeps;
-    Sequence sequence(config, test::go_on);
+    Sequence sequence(make_problem(config), test::go_on);
     run_all(sequence, config);
     const auto& rows = sequence.loading();
     ASSERT_EQ(rows.size(), 1 + 3 * 6U);
@@ -300,7 +303,7 @@ TEST(Sequence, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
 TEST(Sequence, OnAMachineAboveKeepsItsBooks) {
   auto config = pushed_block(4);
   config.machine = {1e10, 2e10};
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   run_all(sequence, config);
   const auto& rows = sequence.loading();
   expect_balance(rows, 1e-11 * largest_term(rows));
@@ -313,7 +316,8 @@ TEST(Sequence, APusherNeedsNodes) {
   config.plate.coarsenings = 1;
   config.plate.fine_height_m = 0.02;
   config.machine.pusher = {0.0695, 0.0745};
-  EXPECT_THAT(error_of([&] { Sequence(config, test::go_on); }), HasSubstr("no node lies between"));
+  EXPECT_THAT(error_of([&] { Sequence(make_problem(config), test::go_on); }),
+              HasSubstr("no node lies between"));
 }
 
 TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
@@ -324,11 +328,11 @@ TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
   config.base.plate = config.plate;
   config.base.material = config.material;
   config.loading.tilt_left_m = config.loading.tilt_right_m = 0.2e-3;
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   std::size_t n_local = 0;
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
-    const auto result = run_from(config, *initial, test::go_on);
+    const auto result = run_from(make_problem(config), *initial, test::go_on);
     sequence.record_event(result);
     const auto& slip_m = result.event.interface_at_end.slip_m;
     const auto& t_Pa = initial->subcritical.tractions.t_s_Pa;
@@ -346,7 +350,7 @@ TEST(Sequence, OfTwoEqualBodiesKeepsTheirSymmetry) {
 TEST(Sequence, GoesOnUnderAStrengthThatLeavesNodesBeyondMuS) {
   auto config = sequence_case(20);
   config.regularisation.relaxed = interface::Relaxed::initial_pressure;
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   int n_at_rest = 0;
   while (sequence.end().empty()) {
     const double at_rest_m = sequence.loading().back().shear_m;
@@ -364,7 +368,7 @@ FinishedSequence start_sequence(
     const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed,
     const EventDone& done = [](std::size_t, const record::SequenceEvent&) {}) {
   results::ResultFolder folder(dir, run_work);
-  return run_sequence_into(folder, config, test::with_threads(1), hooks, done);
+  return run_sequence_into(folder, make_problem(config), test::with_threads(1), hooks, done);
 }
 
 FinishedSequence resume_sequence_in(const fs::path& dir, const SessionHooks& hooks = undisturbed) {
@@ -435,7 +439,7 @@ TEST(Sequences, AreTheSameWhereverTheyWereStopped) {
   healing.sequence.healing_per_e_fold = 0.02;
   for (const auto& [name, config, n_tables] :
        {Stopped{"plain", sequence_case(3), 3 + 3 * 6},
-        {"healing", healing, 3 + 3 * 7},                          // each event has its friction.csv
+        {"healing", healing, 3 + 3 * 6},
         {"law with a state", rate_and_state_case(3), 3 + 3 * 7},  // and slow slip before it
         {"pushed by a spring", pushed_block(3), 3 + 3 * 6}}) {
     SCOPED_TRACE(name);
@@ -457,7 +461,7 @@ TEST(Sequences, AreTheSameWhereverTheyWereStopped) {
 TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
   auto config = rate_and_state_case(2);
   const double a = config.friction.parameter("a");
-  const auto refused = [&] { return error_of([&] { check(config); }); };
+  const auto refused = [&] { return error_of([&] { check(make_problem(config)); }); };
   config.friction.parameter("b") = a;
   EXPECT_THAT(refused(), HasSubstr("no event comes; choose sequence.end_s"));
   // Along x what counts is the weakest.
@@ -469,13 +473,13 @@ TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
   along_x(2 * a);
   EXPECT_THAT(refused(), HasSubstr("no event comes"));
   along_x(0.5 * a);
-  check(config);
+  check(make_problem(config));
   along_x(2 * a);
   config.sequence.end_s = 10;
-  check(config);
+  check(make_problem(config));
   config.sequence.end_s = infinity;
   config.sequence.path = {{10}, {1e-6}};
-  check(config);
+  check(make_problem(config));
 }
 
 /// Friction that strengthens: rows come until the time at which it ends.
@@ -631,15 +635,14 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
   config.sequence.healing_per_e_fold = 0.02;
   config.sequence.healing_time_s = 2;
   const double mu_s = test::law(config).mu_s;
-  Sequence sequence(config, test::go_on);
+  Sequence sequence(make_problem(config), test::go_on);
   std::vector<double> slipped_at_s;  // [nodes]
   while (sequence.end().empty()) {
     const auto* initial = sequence.next();
-    const double now_s = initial->critical_shear_m / top_speed_m_per_s(config);
-    const auto& of_event = sequence.config_of_event();
+    const double now_s = initial->critical_shear_m / make_problem(config).shear_speed_m_per_s;
     const auto& x_m = initial->subcritical.tractions.x_m;
     slipped_at_s.resize(x_m.size());
-    const auto laws = input::friction_at(of_event, x_m);
+    const auto laws = friction_at(make_problem(config), x_m, initial->healed);
     double nearest = 0;
     for (std::size_t k = 0; k < x_m.size(); ++k) {
       const double grown = mu_s + 0.02 * std::log(1 + (now_s - slipped_at_s[k]) / 2);
@@ -650,30 +653,28 @@ TEST(Sequence, StrengthGrowsWithTheTimeAtRest) {
             std::max(nearest, s.tractions.t_s_Pa[k] / (s.tractions.p_s_Pa[k] * laws[k].parameter("mu_s")));
     }
     EXPECT_NEAR(nearest, 1 + config.loading.critical_margin, 1e-6);
-    const auto result = run_from(of_event, *initial, test::go_on);
-    const auto begun_with = of_event.friction_along_x.table.text;
+    const auto result = run_from(make_problem(config), *initial, test::go_on);
     sequence.record_event(result);
-    EXPECT_EQ(of_event.friction_along_x.table.text, begun_with);  // of which its row tells
     const double rests_s = sequence.loading().back().time_s;
     for (const auto& onset : result.event.record.onsets) slipped_at_s[onset.node] = rests_s;
   }
   expect_balance(sequence.loading(), 1e-10 * largest_work(sequence.loading()));
   // Without healing the same comes earlier.
   config.sequence.healing_per_e_fold = 0;
-  Sequence strong_at_once(config, test::go_on);
+  Sequence strong_at_once(make_problem(config), test::go_on);
   strong_at_once.next();
   EXPECT_LT(strong_at_once.loading().back().time_s, sequence.events().front().begin_s);
 }
 
 TEST(Sequence, AHoldDelaysWhatFollows) {
   auto config = sequence_case(3);
-  Sequence straight(config, test::go_on);
+  Sequence straight(make_problem(config), test::go_on);
   run_all(straight, config);
-  const double v = top_speed_m_per_s(config), first_s = straight.events()[0].begin_s;
+  const double v = make_problem(config).shear_speed_m_per_s, first_s = straight.events()[0].begin_s;
   const double hold_from_s = 0.5 * first_s, hold_s = 1000;
   config.sequence.path = {{hold_from_s, hold_from_s + hold_s, 1e6 + hold_s},
                           {v * hold_from_s, v * hold_from_s, v * 1e6}};
-  Sequence held(config, test::go_on);
+  Sequence held(make_problem(config), test::go_on);
   run_all(held, config);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(held.events()[k].shear_m, straight.events()[k].shear_m, 1e-12) << k;
@@ -681,7 +682,7 @@ TEST(Sequence, AHoldDelaysWhatFollows) {
   }
   config.sequence.max_events = 100;
   config.sequence.path = {{hold_from_s}, {v * hold_from_s}};
-  Sequence ended(config, test::go_on);
+  Sequence ended(make_problem(config), test::go_on);
   EXPECT_EQ(ended.next(), nullptr);
   EXPECT_DOUBLE_EQ(ended.loading().back().time_s, hold_from_s);
   EXPECT_DOUBLE_EQ(ended.loading().back().shear_m, v * hold_from_s);
@@ -690,14 +691,14 @@ TEST(Sequence, AHoldDelaysWhatFollows) {
 /// Slide, hold, slide: the force relaxes as slip goes on, and the surfaces have aged for what follows.
 TEST(Sequence, InAHoldTheForceRelaxesUnderALawWithAState) {
   auto config = rate_and_state_case(2);
-  const double v = top_speed_m_per_s(config);
-  Sequence straight(config, test::go_on);
+  const double v = make_problem(config).shear_speed_m_per_s;
+  Sequence straight(make_problem(config), test::go_on);
   straight.next();
   const auto first = straight.loading().back();
   const double hold_from_s = 0.9 * first.time_s, hold_s = 100;
   config.sequence.path = {{hold_from_s, hold_from_s + hold_s, hold_from_s + 2 * hold_s},
                           {v * hold_from_s, v * hold_from_s, v * (hold_from_s + hold_s)}};
-  Sequence held(config, test::go_on);
+  Sequence held(make_problem(config), test::go_on);
   // Mean tractions in the hold, as it begins and as it ends.
   double first_Pa = 0, last_Pa = 0;
   const auto* initial = held.next([&](const record::History& row) {
@@ -724,8 +725,8 @@ TEST(Sequence, InAHoldTheForceRelaxesUnderALawWithAState) {
 
 TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
   const auto config = rate_and_state_case(4);
-  Sequence sequence(config, test::go_on);
-  const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
+  Sequence sequence(make_problem(config), test::go_on);
+  const double rate_m_per_s = inertia_slip_rate_m_per_s(make_problem(config));
   while (sequence.end().empty()) {
     std::vector<double> psi_before;
     double time_s = -1;
@@ -739,7 +740,7 @@ TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
     EXPECT_EQ(begins.phase, LoadingPhase::event_begins);
     EXPECT_GE(begins.fastest_slip_rate_m_per_s, rate_m_per_s);
     EXPECT_LE(begins.fastest_slip_rate_m_per_s, 1.1 * rate_m_per_s);
-    const auto result = run_from(config, *initial, test::go_on);
+    const auto result = run_from(make_problem(config), *initial, test::go_on);
     // It goes on from the slip rates and the state with which slow slip has ended.
     const auto& history = result.event.history;
     const std::size_t n = history.x_m.size();
@@ -755,7 +756,7 @@ TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
   EXPECT_GT(std::ranges::count(rows, LoadingPhase::creep, &LoadingRow::phase), 20);
   expect_balance(rows, 1e-10 * largest_work(rows));
   for (const auto& row : rows)
-    EXPECT_NEAR(row.time_s, row.shear_m / top_speed_m_per_s(config), 1e-9 * row.time_s);
+    EXPECT_NEAR(row.time_s, row.shear_m / make_problem(config).shear_speed_m_per_s, 1e-9 * row.time_s);
   // Stick-slip: the force falls in each of the last events, and slip comes to metres a second.
   const auto& events = sequence.events();
   for (std::size_t k = 2; k < events.size(); ++k) {
@@ -769,8 +770,8 @@ TEST(Sequence, TimesOfEventsDependLittleOnTheSlipRateAtWhichInertiaCounts) {
   std::vector<double> last_s;
   for (const double factor : {0.5, 1.0, 2.0}) {
     auto config = rate_and_state_case(4);
-    config.sequence.inertia_slip_rate_m_per_s = factor * input::inertia_slip_rate_m_per_s(config);
-    Sequence sequence(config, test::go_on);
+    config.sequence.inertia_slip_rate_m_per_s = factor * inertia_slip_rate_m_per_s(make_problem(config));
+    Sequence sequence(make_problem(config), test::go_on);
     run_all(sequence, config);
     last_s.push_back(sequence.events().back().begin_s);
   }

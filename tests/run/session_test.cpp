@@ -8,12 +8,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "cases.hpp"
 #include "files/checksum.hpp"
 #include "input/schema.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/velocity_weakening.hpp"
+#include "problem/source.hpp"
 #include "run/checkpoint.hpp"
 #include "sessions.hpp"
 #include "support/files.hpp"
@@ -23,6 +25,7 @@ namespace slipfront::run {
 namespace {
 
 namespace fs = std::filesystem;
+using problem::make_problem;
 using test::coarse_case;
 using test::error_of;
 using test::prestressed_case;
@@ -55,13 +58,15 @@ void expect_same(const std::map<std::string, std::string>& files,
 
 Finished start(const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed) {
   results::ResultFolder held(dir, run_work);
-  return run_into(held, config, test::with_threads(1), hooks);
+  return run_into(held, make_problem(config), test::with_threads(1), hooks);
 }
 
 Finished resume(const fs::path& dir, const SessionHooks& hooks = undisturbed,
                 const input::Case* expected = nullptr, int threads = 1) {
   results::ResultFolder held(dir, run_work);
-  return run::resume(held, expected, test::with_threads(threads), hooks);
+  std::optional<Problem> compared;
+  if (expected != nullptr) compared = make_problem(*expected);
+  return run::resume(held, compared ? &*compared : nullptr, test::with_threads(threads), hooks);
 }
 
 /// Results of a whole run.
@@ -191,7 +196,7 @@ class InterruptedRun : public testing::Test {
     results::ResultFolder held(folder_.path(), run_work);
     auto options = test::with_threads(1);
     options.keep_every_s = 20e-6;
-    run_into(held, config_, options, stopping_at("event", 100));
+    run_into(held, make_problem(config_), options, stopping_at("event", 100));
   }
   std::vector<fs::path> checkpoints() const {
     std::vector<fs::path> files;
@@ -251,11 +256,13 @@ TEST(Session, RefusesAnotherTableOfFriction) {
   auto config = prestressed_case();
   test::set_table(config, "x_m,mu_k\n0,0.6\n0.2,0.7\n");
   start(folder.path(), config, stopping_at("event", 50));
-  const auto unfinished = folder / "unfinished", file = unfinished / friction_file;
+  const auto unfinished = folder / "unfinished", file = unfinished / problem::friction_file;
   test::write_file(file, "x_m,mu_k\n0,0.6\n0.2,0.8\n");
   EXPECT_EQ(error_of([&] { resume(folder.path()); }),
             file.string() + ": was changed since the run was begun; restore it, or start a new run");
-  EXPECT_THAT(error_of([&] { require_same_case(config, unfinished); }),
+  EXPECT_THAT(error_of([&] {
+                require_same_case(make_problem(config).source, problem::read_problem(unfinished).source);
+              }),
               HasSubstr("the table of its friction: is another case"));
 }
 
@@ -271,7 +278,7 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
 TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   auto kept = Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {});
   ASSERT_TRUE(kept);
-  const InitialState whole = read_initial_state(kept->body, config_);
+  const InitialState whole = read_initial_state(kept->body, make_problem(config_));
   const auto keep = [&](auto... parts) {
     Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](results::OutputArchive& archive) {
       archive(parts...);
@@ -328,6 +335,15 @@ TEST(Session, TellsHowItStands) {
   const auto run = nlohmann::json::parse(test::read_file(file));
   EXPECT_EQ(run["status"], "interrupted");
   EXPECT_THAT(run["reason"].get<std::string>(), StartsWith("interrupted at t = "));
+}
+
+TEST(SuitableThreads, AreOneForSmallPlates) {
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  EXPECT_EQ(suitable_threads(make_problem(test::coarse_case(interface::EventKind::left, 1e-3))), 1);
+  EXPECT_EQ(suitable_threads(make_problem(test::coarse_case(interface::EventKind::left, 2.0 / 3e3))),
+            std::min(2, processors));
+  EXPECT_EQ(suitable_threads(make_problem(test::coarse_case(interface::EventKind::left, 1e-4))),
+            std::min(4, processors));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 namespace slipfront::run {
 namespace {
 
+using problem::make_problem;
 struct Edges {
   const char* name;
   mesh::Sides sides;
@@ -33,10 +34,10 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
   config.base.kind = input::BaseKind::body;
   config.base.plate.height_m = 0.4;
   config.base.plate.sides = GetParam().sides;
-  ASSERT_TRUE(has_equal_elements(config));
-  const auto meshes = check(config);
+  ASSERT_TRUE(has_equal_elements(make_problem(config)));
+  const auto meshes = check(make_problem(config));
   const auto whole = whole_snapshot_mesh(meshes);
-  const auto rows = snapshot_mesh_in_rows(config);
+  const auto rows = snapshot_mesh_in_rows(make_problem(config));
   int n_slabs = 0;
   rows.slabs.for_some(0, rows.slabs.n_slabs, [&](const mesh::Slab&) { ++n_slabs; });
   EXPECT_EQ(n_slabs, 4);
@@ -50,7 +51,7 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
   const auto written = [&](const SnapshotMesh& mesh) {
     const test::TemporaryFolder folder;
     test::write_snapshots(folder.path(), mesh.slabs, std::span(&snapshot, 1),
-                          snapshot_contents(config, mesh));
+                          snapshot_contents(make_problem(config), mesh));
     return test::read_file(folder / results::snapshot_file);
   };
   EXPECT_TRUE(written(rows) == written(whole));

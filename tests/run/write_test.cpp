@@ -18,6 +18,7 @@ namespace slipfront::run {
 namespace {
 
 using nlohmann::json;
+using problem::make_problem;
 using test::coarse_case;
 using test::go_on;
 
@@ -33,8 +34,8 @@ class WrittenRun : public testing::Test {
       config = coarse_case();
       config.title = "a \"written\" run";
       config.output.snapshot_times_s = {0, 10e-6, 30e-6};
-      initial = make_initial_state(config, go_on);
-      result = run_from(config, initial, go_on);
+      initial = make_initial_state(make_problem(config), go_on);
+      result = run_from(make_problem(config), initial, go_on);
       write(folder.path(), result, initial);
     }
   };
@@ -223,7 +224,7 @@ std::filesystem::path run_streamed(const input::Case& config, const std::filesys
     stop = std::string(part) == "event" && !monitor(step, total);
   };
   hooks.request = [&] { return stop ? Request::stop : Request::none; };
-  const auto run = run_into(folder, config, {}, hooks);
+  const auto run = run_into(folder, make_problem(config), {}, hooks);
   EXPECT_TRUE(run.result.event.history.time_s.empty());
   EXPECT_TRUE(run.result.event.snapshots.empty());
   return status_of(run.result).name == "complete" ? dir : folder.unfinished();
@@ -231,8 +232,8 @@ std::filesystem::path run_streamed(const input::Case& config, const std::filesys
 
 void run_in_memory(const input::Case& config, const std::filesystem::path& dir,
                    const motion::Monitor& monitor) {
-  const auto initial = make_initial_state(config, go_on);
-  write(dir, run_from(config, initial, monitor), initial);
+  const auto initial = make_initial_state(make_problem(config), go_on);
+  write(dir, run_from(make_problem(config), initial, monitor), initial);
 }
 
 /// Names of a run's files, but of what tells apart one that is complete.
@@ -282,9 +283,9 @@ TEST(StreamedRun, EqualsTheOneKeptInMemory) {
 
 TEST(Write, OfARampTellsBothWays) {
   const auto config = test::ramped_case();
-  const auto initial = make_initial_state(config, go_on);
+  const auto initial = make_initial_state(make_problem(config), go_on);
   const test::TemporaryFolder folder;
-  write(folder.path(), run_from(config, initial, go_on), initial);
+  write(folder.path(), run_from(make_problem(config), initial, go_on), initial);
   const json ramp = json::parse(test::read_file(folder / "run.json"))["statics"]["ramp"];
   EXPECT_EQ(ramp["critical_shear_m"], initial.ramp->supercritical.shear_m);
   EXPECT_DOUBLE_EQ(ramp["relative_to_direct"],

@@ -17,14 +17,14 @@ namespace slipfront::run {
 namespace {
 
 /// Two events of each of two initial states.
-std::vector<input::Case> cases() {
-  std::vector<input::Case> all;
+std::vector<Problem> cases() {
+  std::vector<Problem> all;
   for (const double mu_s : {1.2, 1.3})
     for (const double end_s : {30e-6, 40e-6}) {
       auto config = test::coarse_case(interface::EventKind::spontaneous, 5e-3);
       test::law(config).mu_s = mu_s;
       config.time.end_s = end_s;
-      all.push_back(config);
+      all.push_back(problem::make_problem(config));
     }
   return all;
 }

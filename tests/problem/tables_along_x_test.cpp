@@ -8,12 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "input/friction_along_x.hpp"
+#include "input/friction_table.hpp"
+#include "input/messages.hpp"
 #include "input/prestress.hpp"
 #include "interface/friction/velocity_weakening.hpp"
-#include "messages.hpp"
+#include "problem/contact.hpp"
 
-namespace slipfront::input {
+namespace slipfront::problem {
+
+using namespace input;  // its tables are what is tested
 namespace {
 
 using interface::VelocityWeakening;
@@ -30,7 +33,8 @@ const std::string rows = "x_m,t_Pa,p_Pa\n0,1e6,4e6\n0.1,-2e6,5e6\n0.4,0,2e6\n";
 
 std::vector<double> mu_k_at(const Case& config, const std::vector<double>& x_m) {
   std::vector<double> values;
-  for (const auto& l : friction_at(config, x_m)) values.push_back(l.as<VelocityWeakening>().mu_k);
+  for (const auto& l : friction_at(make_problem(config), x_m))
+    values.push_back(l.as<VelocityWeakening>().mu_k);
   return values;
 }
 
@@ -94,10 +98,11 @@ TEST_F(Table, OfFrictionIsLinearOrStepwiseBetweenItsRows) {
 }
 
 TEST_F(Table, ParametersWithoutAColumnKeepTheCasesValues) {
-  for (const auto& l : friction_at(with_friction("x_m,alpha_m2_per_s2,mu_s\n0,0.2,1.4\n1,0.2,1.4\n"), {0, 1}))
+  for (const auto& l :
+       friction_at(make_problem(with_friction("x_m,alpha_m2_per_s2,mu_s\n0,0.2,1.4\n1,0.2,1.4\n")), {0, 1}))
     EXPECT_THAT(l.as<VelocityWeakening>(), testing::FieldsAre(1.4, 0.6, 0.2));
-  EXPECT_TRUE(friction_at(Case{}, {0, 1}).empty());
-  EXPECT_TRUE(contact_model(Case{}, {0, 1}).law_per_node.empty());
+  EXPECT_TRUE(friction_at(make_problem(Case{}), {0, 1}).empty());
+  EXPECT_TRUE(contact_model(make_problem(Case{}), {0, 1}).law_per_node.empty());
 }
 
 TEST_F(Table, MustCoverTheInterface) {
@@ -110,7 +115,7 @@ TEST_F(Table, MustCoverTheInterface) {
   EXPECT_EQ(prestress_at(prestress, {0, 0.4 + 1e-12}).p_s_Pa.back(), 2e6);
   const auto c = with_friction("x_m,mu_k\n0,0.6\n0.4,0.6\n");
   EXPECT_THAT(error_of([&] {
-                friction_at(c, {0, 0.5});
+                friction_at(make_problem(c), {0, 0.5});
               }),
               StartsWith("friction.file: " + file_.string() + ": covers x = 0 to 0.4 m"));
   EXPECT_EQ(mu_k_at(c, {0, 0.4 + 1e-12}).back(), 0.6);
@@ -240,8 +245,9 @@ TEST(FrictionAlongX, NodesThatAreNotAllowedAreNamed) {
   c.friction_along_x.random_share = 5;
   std::vector<double> x_m;
   for (int i = 0; i <= 100; ++i) x_m.push_back(1e-2 * i);
-  expect_message(error_of([&] { friction_at(c, x_m); }), "friction.random_share: at x = ", " m mu_k ");
+  expect_message(error_of([&] { friction_at(make_problem(c), x_m); }),
+                 "friction.random_share: at x = ", " m mu_k ");
 }
 
 }  // namespace
-}  // namespace slipfront::input
+}  // namespace slipfront::problem

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace slipfront::input {
+namespace slipfront::problem {
 
 /// A Gaussian random function of position with mean 0, variance 1 and correlation exp(-x^2/(2 l^2)) over the
 /// seeds: a sum of cosines of random wavenumbers and phases (Shinozuka 1971), the same for any nodes. One
@@ -20,4 +20,4 @@ class RandomField {
   std::vector<double> turns_per_m_, turns_;  ///< of each cosine: its wavenumber and phase over 2 pi
 };
 
-}  // namespace slipfront::input
+}  // namespace slipfront::problem

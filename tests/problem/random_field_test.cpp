@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "input/random_field.hpp"
+#include "problem/random_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace slipfront::input {
+namespace slipfront::problem {
 namespace {
 
 constexpr double l_m = 10e-3;
@@ -83,4 +83,4 @@ TEST(RandomField, IsOfItsSeed) {
 }
 
 }  // namespace
-}  // namespace slipfront::input
+}  // namespace slipfront::problem

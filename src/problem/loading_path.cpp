@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/loading_path.hpp"
+#include "problem/loading_path.hpp"
 
 #include <algorithm>
 
 #include "base/numbers.hpp"
-#include "run/choices.hpp"
 
-namespace slipfront::run {
+namespace slipfront::problem {
 
-LoadingPath::LoadingPath(const input::Case& config)
-    : speed_m_per_s_(top_speed_m_per_s(config)), end_s_(config.sequence.end_s) {
-  const auto& [times_s, shears_m] = config.sequence.path;
+LoadingPath::LoadingPath(const input::Sequence& sequence, double shear_speed_m_per_s)
+    : speed_m_per_s_(shear_speed_m_per_s), end_s_(sequence.end_s) {
+  const auto& [times_s, shears_m] = sequence.path;
   if (times_s.empty()) return;
   times_s_ = {0};
   shears_m_ = {0};
@@ -56,4 +55,4 @@ double LoadingPath::fastest_m_per_s() const {
   return fastest_m_per_s;
 }
 
-}  // namespace slipfront::run
+}  // namespace slipfront::problem

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "input/random_field.hpp"
+#include "problem/random_field.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-namespace slipfront::input {
+namespace slipfront::problem {
 namespace {
 
 /// The excess of the field's fourth moment over a Gaussian's is -1.5 over their number.
@@ -57,4 +57,4 @@ double RandomField::operator()(double x_m) const {
   return std::sqrt(2.0 / static_cast<double>(n_cosines)) * sum;
 }
 
-}  // namespace slipfront::input
+}  // namespace slipfront::problem

@@ -5,13 +5,13 @@
 
 #include "input/case.hpp"
 
-namespace slipfront::run {
+namespace slipfront::problem {
 
 /// Where along x the loading of a sequence has brought the top edge, the pusher or the machine, over the time
 /// since normal loading: sequence.times_s and shears_m, linear between, or at a constant speed.
 class LoadingPath {
  public:
-  explicit LoadingPath(const input::Case& config);
+  LoadingPath(const input::Sequence& sequence, double shear_speed_m_per_s);
 
   /// The loading's: sequence.end_s, and at most the last of the times.
   double end_s() const { return end_s_; }
@@ -30,4 +30,4 @@ class LoadingPath {
   double end_s_;
 };
 
-}  // namespace slipfront::run
+}  // namespace slipfront::problem

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/loading_path.hpp"
+#include "problem/loading_path.hpp"
 
 #include <gtest/gtest.h>
 
-#include "run/choices.hpp"
-
-namespace slipfront::run {
+namespace slipfront::problem {
 namespace {
 
 TEST(LoadingPath, IsStraightWithoutTimes) {
-  input::Case config;
-  const LoadingPath path(config);
-  const double speed = top_speed_m_per_s(config);
+  constexpr double speed = 1e-3;
+  const LoadingPath path({}, speed);
   EXPECT_EQ(path.end_s(), infinity);
   EXPECT_DOUBLE_EQ(path.shear_m(3), 3 * speed);
   EXPECT_DOUBLE_EQ(path.time_s(3 * speed, 0), 3);
@@ -21,9 +18,9 @@ TEST(LoadingPath, IsStraightWithoutTimes) {
 }
 
 TEST(LoadingPath, GoesFromPlaceToPlace) {
-  input::Case config;
-  config.sequence.path = {{2, 10, 11}, {4e-6, 4e-6, 10e-6}};  // slide, hold, slide
-  const LoadingPath path(config);
+  input::Sequence sequence;
+  sequence.path = {{2, 10, 11}, {4e-6, 4e-6, 10e-6}};  // slide, hold, slide
+  const LoadingPath path(sequence, 1);
   EXPECT_EQ(path.end_s(), 11);
   EXPECT_DOUBLE_EQ(path.shear_m(1), 2e-6);
   EXPECT_DOUBLE_EQ(path.shear_m(5), 4e-6);
@@ -37,10 +34,10 @@ TEST(LoadingPath, GoesFromPlaceToPlace) {
   EXPECT_EQ(path.part_end_s(2), 10);
   // Somewhat ahead of the path, it waits.
   EXPECT_DOUBLE_EQ(path.speed_m_per_s(2, 4.8e-6), -1e-7);
-  config.sequence.end_s = 10.5;
-  EXPECT_EQ(LoadingPath(config).end_s(), 10.5);
-  EXPECT_EQ(LoadingPath(config).part_end_s(10), 10.5);
+  sequence.end_s = 10.5;
+  EXPECT_EQ(LoadingPath(sequence, 1).end_s(), 10.5);
+  EXPECT_EQ(LoadingPath(sequence, 1).part_end_s(10), 10.5);
 }
 
 }  // namespace
-}  // namespace slipfront::run
+}  // namespace slipfront::problem

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "interface/nucleation.hpp"
+#include "interface/trigger.hpp"
+
+namespace slipfront::interface {
+
+/// How an event begins. What the kind does not name does not count.
+struct Start {
+  EventKind kind = EventKind::spontaneous;
+  Trigger trigger;
+  Nucleation nucleation;
+
+  /// Whether a traction is added next to an edge of contact.
+  bool pushes_edge() const { return is_at_edge(kind) && trigger.form != TriggerForm::weakened; }
+  /// Whether a traction is added over a patch.
+  bool overstresses() const {
+    return kind == EventKind::nucleation && nucleation.form == NucleationForm::overstress;
+  }
+  /// Whether a patch is weakened.
+  bool weakens_patch() const { return kind == EventKind::nucleation && !overstresses(); }
+  /// Whether it is weakened over a time.
+  bool is_forced() const { return weakens_patch() && nucleation.form == NucleationForm::forced; }
+  /// Whether a force begins it, with the trigger's ramp and duration.
+  bool is_by_force() const { return pushes_edge() || overstresses(); }
+  /// nucleation.form, of a patch that is weakened.
+  const char* weakening_form() const { return is_forced() ? "forced" : "weakened"; }
+};
+
+}  // namespace slipfront::interface
