@@ -104,8 +104,9 @@ PerNode ratios_at_rest(const Problem& problem, const std::vector<double>& of_nod
   return of_nodes.empty() ? PerNode(interface::static_coefficient(problem.friction.law)) : PerNode(of_nodes);
 }
 
-std::vector<double> ratios_at_rest(const Problem& problem, const mesh::Mesh& mesh) {
-  auto laws = friction_at(problem, mesh::interface_x_m(mesh));
+std::vector<double> ratios_at_rest(const Problem& problem, const mesh::Mesh& mesh,
+                                   const std::vector<double>& healed) {
+  auto laws = friction_at(problem, mesh::interface_x_m(mesh), healed);
   if (laws.empty() && problem.friction.law.cohesion_Pa() == 0) return {};
   laws.resize(mesh.interface_nodes.size(), problem.friction.law);
   const bool is_cohesive = std::ranges::any_of(laws, [](const auto& law) { return law.cohesion_Pa() > 0; });

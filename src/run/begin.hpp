@@ -16,8 +16,10 @@ namespace slipfront::run {
 /// t/p at which nodes slip in the state before the event: static coefficients; with a cohesion the strength
 /// under the prescribed pressure over that. @param of_nodes  as below
 PerNode ratios_at_rest(const Problem& problem, const std::vector<double>& of_nodes);
-/// t/p at rest of each node; empty where all have the static coefficient of the case.
-std::vector<double> ratios_at_rest(const Problem& problem, const mesh::Mesh& mesh);
+/// t/p at rest of each node; empty where all have the static coefficient of the case. @param healed  see
+/// friction_at
+std::vector<double> ratios_at_rest(const Problem& problem, const mesh::Mesh& mesh,
+                                   const std::vector<double>& healed = {});
 
 /// When the loads of a case's event last change; inf where they go on to.
 double loads_settle_s(const Problem& problem);

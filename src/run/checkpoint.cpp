@@ -87,9 +87,12 @@ InitialState read_initial_state(results::InputArchive& archive, const Problem& p
   const auto count = [&](auto&& count_of) {
     return count_of(initial.mesh) + (initial.base ? count_of(*initial.base) : 0);
   };
+  require_possible(initial.healed.size() == (problem.heals() ? x_m.size() : 0) &&
+                       std::ranges::all_of(initial.healed, [](double gain) { return gain >= 0; }),
+                   "strengths");
   require_possible(initial.n_nodes == count(n_nodes_of) && initial.n_cells == count(n_cells_of) &&
                        initial.tributary_m == mesh::tributary_lengths_m(initial.mesh) &&
-                       initial.mu_s == meshes.mu_s,
+                       initial.mu_s == ratios_at_rest(problem, initial.mesh, initial.healed),
                    "a plate");
   require_possible(is_possible(initial) && initial.prescribed == problem.is_prestressed() &&
                        initial.ramp.has_value() == by_ramp &&

@@ -11,6 +11,7 @@
 #include "boundary/boundary.hpp"
 #include "fronts/fit.hpp"
 #include "problem/contact.hpp"
+#include "run/begin.hpp"
 
 namespace slipfront::run {
 
@@ -233,17 +234,12 @@ const InitialState* Sequence::next(const SlowRows& slow_rows) {
 }
 
 void Sequence::heal_until(double time_s) {
-  const auto x_m = mesh::interface_x_m(initial_.mesh);
-  auto laws = friction_at(problem_, x_m);
-  laws.resize(x_m.size(), problem_.friction.law);
   const auto& sequence = problem_.sequence;
-  initial_.mu_s.clear();
   initial_.healed.clear();
-  for (std::size_t k = 0; k < laws.size(); ++k) {
+  for (const double since_s : rest_.rests_since_s)
     initial_.healed.push_back(sequence.healing_per_e_fold *
-                              std::log1p((time_s - rest_.rests_since_s[k]) / sequence.healing_time_s));
-    initial_.mu_s.push_back(laws[k].parameter("mu_s") + initial_.healed.back());
-  }
+                              std::log1p((time_s - since_s) / sequence.healing_time_s));
+  initial_.mu_s = ratios_at_rest(problem_, initial_.mesh, initial_.healed);
   statics_.set_mu_s(initial_.mu_s, "sequence.healing_per_e_fold");
 }
 
