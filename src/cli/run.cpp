@@ -18,7 +18,6 @@
 #include "problem/source.hpp"
 #include "results/folder.hpp"
 #include "run/needs.hpp"
-#include "run/sequence_session.hpp"
 #include "run/session.hpp"
 
 namespace slipfront::cli {
@@ -189,14 +188,6 @@ struct GivenCase {
       : file(std::move(read)), problem(problem::make_problem(file.config())) {}
 };
 
-run::Finished run_or_go_on(const RunArguments& options, results::ResultFolder& folder,
-                           const std::optional<GivenCase>& given) {
-  const auto hooks = cli::hooks(options.quiet);
-  if (options.restart) return run::resume(folder, given ? &given->problem : nullptr, options.session, hooks);
-  return given->file.placing_errors(
-      [&] { return run::run_into(folder, given->problem, options.session, hooks); });
-}
-
 void print_event(std::size_t number, const record::SequenceEvent& e) {
   const auto extent = e.length_m > 0
                           ? fmt::format("x = {:.4f} to {:.4f} m{}, mean slip {:.3g} m", e.from_x_m, e.to_x_m,
@@ -206,30 +197,16 @@ void print_event(std::size_t number, const record::SequenceEvent& e) {
         e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
 }
 
-void run_sequence(const RunArguments& options, results::ResultFolder& folder,
-                  const std::optional<GivenCase>& given) {
-  const auto hooks = cli::hooks(options.quiet);
-  const run::EventDone done = [&](std::size_t number, const record::SequenceEvent& event) {
-    if (!options.quiet) print_event(number, event);
-  };
-  if (!options.quiet && given)
-    for (const auto& note : given->file.notes()) print("note: {}\n", note);
-  const auto finished =
-      options.restart
-          ? run::resume_sequence(folder, given ? &given->problem : nullptr, options.session, hooks, done)
-          : given->file.placing_errors(
-                [&] { return run::run_sequence_into(folder, given->problem, options.session, hooks, done); });
-  if (options.quiet) return;
+void print_sequence(const run::Finished& finished, const std::string& dir) {
   const auto& strongest = record::strongest(finished.loading);
   print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal,
         strongest.n_events + (is_of_event(strongest.phase) ? 0 : 1));
-  const auto n_events = finished.events.size();
-  print("ended after {} event{}: {}\n", n_events, n_events == 1 ? "" : "s", finished.end);
   const auto& events = finished.events;
+  print("ended after {} event{}: {}\n", events.size(), events.size() == 1 ? "" : "s", finished.end);
   if (std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
     print("{} of them longer than the nucleation length, or global\n",
           std::ranges::count_if(events, record::has_nucleated));
-  print("results: {}\n", folder.dir().string());
+  print("results: {}\n", dir);
 }
 
 void run_case(const CaseArguments& arguments, RunArguments& options) {
@@ -257,15 +234,26 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     given->file.placing_errors([&] { run::require_divisible(given->problem, processes); });
   catch_interrupts();
   try {
-    const bool is_sequence =
-        (options.restart ? run::unfinished_case(folder, nullptr) : given->problem).is_sequence();
-    if (is_sequence) return run_sequence(options, folder, given);
-    const auto [result, initial] = run_or_go_on(options, folder, given);
-    run::require_came_to_end(result, folder);
+    auto hooks = cli::hooks(options.quiet);
+    if (!options.quiet) hooks.event_done = print_event;
+    const auto print_notes = [&] {
+      for (const auto& note : given ? given->file.notes() : std::vector<std::string>())
+        if (!options.quiet) print("note: {}\n", note);
+    };
+    const bool is_sequence = given && given->problem.is_sequence();
+    if (is_sequence) print_notes();
+    const auto finished = options.restart
+                              ? run::resume(folder, given ? &given->problem : nullptr, options.session, hooks)
+                              : given->file.placing_errors([&] {
+                                  return run::run_into(folder, given->problem, options.session, hooks);
+                                });
+    run::require_came_to_end(finished.last.result, folder);
+    if (!is_sequence) print_notes();
     if (options.quiet) return;
-    if (given)
-      for (const auto& note : given->file.notes()) print("note: {}\n", note);
-    print_summary(result, initial, folder.dir().string());
+    if (finished.end.empty())
+      print_summary(finished.last.result, finished.last.initial, folder.dir().string());
+    else
+      print_sequence(finished, folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;
     throw WriteError("{}; {}", error.what(), run::how_to_resume(folder));

@@ -27,7 +27,6 @@
 #include "results/folder.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
-#include "run/sequence_session.hpp"
 #include "run/session.hpp"
 #include "solid/operator.hpp"
 #include "stability/rupture.hpp"
@@ -79,14 +78,13 @@ struct Session {
     options.observers = observers_of(observers, watcher);
   }
 
-  /// @param work  returns a run's end, which may be another than its own; nothing of a sequence
   template <class Work>
   void complete(const Work& work) {
     try {
       const nb::gil_scoped_release unlocked;
-      const std::optional<run::Finished> finished = work();
+      const run::Finished finished = work(watcher.hooks());
       watcher.rethrow();
-      if (finished) run::require_came_to_end(finished->result, folder);
+      run::require_came_to_end(finished.last.result, folder);
     } catch (const Interrupted&) {
       watcher.rethrow();
       throw;
@@ -97,21 +95,16 @@ struct Session {
   }
 };
 
-void show_no_event(std::size_t /*number*/, const record::SequenceEvent& /*event*/) {}
-
 /// @param problem  of the case that was given, or with another friction law
 void run_problem(const input::CaseFile& given, const Problem& problem, const fs::path& dir, bool overwrite,
                  std::optional<int> threads, double checkpoint_every_s, nb::object progress,
                  const Functions& observers = {}, const results::ResultFolder* within = nullptr) {
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers, within);
   session.folder.require_empty(overwrite);
-  session.complete([&] {
-    return given.placing_errors([&]() -> std::optional<run::Finished> {
+  session.complete([&](const run::SessionHooks& hooks) {
+    return given.placing_errors([&] {
       run::require_fit(problem, session.folder.dir());
-      const auto hooks = session.watcher.hooks();
-      if (!problem.is_sequence()) return run::run_into(session.folder, problem, session.options, hooks);
-      run::run_sequence_into(session.folder, problem, session.options, hooks, show_no_event);
-      return {};
+      return run::run_into(session.folder, problem, session.options, hooks);
     });
   });
 }
@@ -190,12 +183,8 @@ void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_e
             const Functions& observers) {
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
   if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
-  session.complete([&]() -> std::optional<run::Finished> {
-    const auto hooks = session.watcher.hooks();
-    if (!run::unfinished_case(session.folder, nullptr).is_sequence())
-      return run::resume(session.folder, nullptr, session.options, hooks);
-    run::resume_sequence(session.folder, nullptr, session.options, hooks, show_no_event);
-    return {};
+  session.complete([&](const run::SessionHooks& hooks) {
+    return run::resume(session.folder, nullptr, session.options, hooks);
   });
 }
 

@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "base/error.hpp"
+#include "base/state.hpp"
 #include "results/archive.hpp"
 #include "run/run.hpp"
 
@@ -19,13 +21,12 @@ const std::string& program_identity();
 struct CheckpointHead {
   std::string program = program_identity();
   problem::Source source;
-  bool in_event = false;  ///< else in the ramp
+  bool in_event = false;  ///< an event is under way; else a ramp, or none of a sequence
   int sessions = 1;       ///< see Status
-  double wall_s = 0;      ///< spent in the event so far
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(program, source, in_event, sessions, wall_s);
+    archive(program, source, in_event, sessions);
   }
 };
 
@@ -42,6 +43,17 @@ void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper)
 /// @param loads    with which it began
 /// @throws as TimeStepper::restore
 void read_motion(results::InputArchive* archive, motion::TimeStepper& stepper, const motion::Loads& loads);
+
+/// Reads from an archive, which is rank 0's and null elsewhere. @throws UserError naming its file
+template <class Read>
+void read_from(const results::InputArchive* kept, Read&& read) {
+  try {
+    read();
+  } catch (const StateError& error) {
+    if (kept == nullptr) throw;
+    throw UserError("{}: {}; start a new run", kept->path().string(), error.what());
+  }
+}
 
 /// The checkpoints in a folder: the last two are kept, numbered as they come.
 class Checkpoints {

@@ -79,20 +79,21 @@ bool all_see(const Order& order, Processes& processes) {
   return unpacked<bool>(processes.broadcast(packed(all_see)));
 }
 
-Order order_of(const results::ResultFolder& folder) {
-  const auto file = std::filesystem::absolute(folder.unfinished() / results::snapshot_file);
+Order order_of(const std::filesystem::path& dir, const std::filesystem::path& state) {
+  const auto file = std::filesystem::absolute(dir / results::snapshot_file);
   if (!files::is_there(file)) return {};
-  return {file, std::filesystem::file_size(file), std::filesystem::absolute(folder.state() / "seen-by-all"),
+  return {file, std::filesystem::file_size(file), std::filesystem::absolute(state / "seen-by-all"),
           unique_text()};
 }
 
 }  // namespace
 
-void write_fields(const results::ResultFolder* folder, const Problem& problem, Processes& processes,
+void write_fields(const std::filesystem::path& dir, const std::filesystem::path& state,
+                  const Problem& problem, Processes& processes,
                   const std::function<void(const std::string&)>& note) {
   const bool is_in_rows = has_equal_elements(problem), are_several = processes.size() > 1;
   auto message = processes.from_root([&](MessageBuffer& to) {
-    const auto order = order_of(*folder);
+    const auto order = order_of(dir, state);
     if (are_several && !order.file.empty()) files::write_text(order.sign, order.sign_text);
     to.append(packed(order));
   });
@@ -109,7 +110,7 @@ void write_fields(const results::ResultFolder* folder, const Problem& problem, P
   processes.from_root([&](MessageBuffer&) {
     if (is_in_rows && are_several)
       note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",
-                       results::snapshot_file, folder->dir().string()));
+                       results::snapshot_file, dir.string()));
     const auto make_mesh = [&] {
       return is_in_rows ? snapshot_mesh_in_rows(problem) : whole_snapshot_mesh(check(problem, processes));
     };

@@ -230,6 +230,7 @@ const InitialState* Sequence::next(const SlowRows& slow_rows) {
   const auto start = Clock::now();
   if (!(slow_ ? slip_to_next(slow_rows) : stick_to_next())) return nullptr;
   initial_.wall_s = seconds_since(start);
+  u_begins_x_m_ = relative(initial_, initial_.supercritical).x_m;
   return &initial_;
 }
 
@@ -412,15 +413,14 @@ void Sequence::record_event(const Result& result) {
   const auto begins = loading_.back();
   const auto& at_end = event.interface_at_end;
   const record::StaticState tractions_at_end{event.record.x_m, at_end.t_Pa, at_end.p_Pa};
-  const auto u = relative(initial_, initial_.supercritical);
   const double shear_m = begins.shear_m + shear_speed_in_event_m_per_s(problem_) * event.time_s;
   rest_.contact.clear();
   rest_.u_x_m.clear();
   double mean_m = 0;
-  for (std::size_t k = 0; k < u.x_m.size(); ++k) {
+  for (std::size_t k = 0; k < u_begins_x_m_.size(); ++k) {
     rest_.contact.push_back(at_end.p_Pa[k] > 0 ? statics::Contact::stick : statics::Contact::open);
-    rest_.u_x_m.push_back(u.x_m[k] + at_end.slip_m[k]);
-    mean_m += rest_.u_x_m.back() / static_cast<double>(u.x_m.size());
+    rest_.u_x_m.push_back(u_begins_x_m_[k] + at_end.slip_m[k]);
+    mean_m += rest_.u_x_m.back() / static_cast<double>(u_begins_x_m_.size());
   }
   for (double& u_x_m : rest_.u_x_m) u_x_m -= mean_m;
   rest_.moved_m += mean_m;
@@ -450,6 +450,7 @@ void Sequence::record_event(const Result& result) {
           std::max(rests.fastest_slip_rate_m_per_s, std::abs(at_end.slip_rate_m_per_s[k]));
   loading_.push_back(rests);
   add_event(result, begins, rests, at_rest_.tractions);
+  u_begins_x_m_.clear();
 }
 
 void Sequence::equilibrate() {
@@ -547,25 +548,39 @@ void Sequence::predict(record::SequenceEvent& event) {
   }
 }
 
+void Sequence::resume_event(const InitialState& initial) {
+  for (auto member : {&InitialState::subcritical, &InitialState::supercritical})
+    initial_.*member = initial.*member;
+  initial_.critical_shear_m = initial.critical_shear_m;
+  initial_.mu_s = initial.mu_s;
+  initial_.healed = initial.healed;
+  initial_.law_states = initial.law_states;
+  initial_.loads = initial.loads;
+}
+
 void Sequence::serialize(StateArchive& archive) {
   archive(rest_.time_s, rest_.moved_m, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi,
-          rest_.rests_since_s, loading_, events_);
+          rest_.rests_since_s, u_begins_x_m_, loading_, events_);
   if (!archive.is_loading()) return;
   const std::size_t n = initial_.tributary_m.size();
-  const auto are_finite = [](const std::vector<double>& values) {
-    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  const std::size_t n_at_rest = slow_ || !events_.empty() ? n : 0;
+  const auto is_of = [](const std::vector<double>& values, std::size_t size) {
+    return values.size() == size &&
+           std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
-  require_possible(!events_.empty() && rest_.contact.size() == n && rest_.u_x_m.size() == n &&
-                       are_finite(rest_.u_x_m) && std::isfinite(rest_.shear_m) &&
+  const std::size_t n_rows = 1 + 3 * events_.size() + (is_in_event() ? 1 : 0);
+  require_possible(rest_.contact.size() == n_at_rest &&
+                       std::ranges::all_of(rest_.contact,
+                                           [](auto contact) { return contact <= statics::Contact::open; }) &&
+                       is_of(rest_.u_x_m, n_at_rest) && is_of(rest_.psi, slow_ ? n : 0) &&
+                       is_of(rest_.rests_since_s, problem_.heals() ? n : 0) &&
+                       is_of(u_begins_x_m_, is_in_event() ? n : 0) && std::isfinite(rest_.shear_m) &&
                        std::isfinite(rest_.time_s) && std::isfinite(rest_.moved_m) &&
-                       std::ranges::max(rest_.contact) <= statics::Contact::open &&
-                       rest_.rests_since_s.size() == (problem_.heals() ? n : 0) &&
-                       are_finite(rest_.rests_since_s) && rest_.psi.size() == (slow_ ? n : 0) &&
-                       are_finite(rest_.psi) && (slow_ || loading_.size() == 1 + 3 * events_.size()) &&
+                       (slow_ ? loading_.size() >= n_rows : loading_.size() == n_rows) &&
                        std::ranges::all_of(
                            loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),
                    "a sequence");
-  equilibrate();
+  if (!events_.empty()) equilibrate();
 }
 
 }  // namespace slipfront::run

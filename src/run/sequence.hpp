@@ -46,7 +46,11 @@ class Sequence {
   const std::vector<record::SequenceEvent>& events() const { return events_; }
   const std::vector<record::LoadingRow>& loading() const { return loading_; }
 
-  /// Between events.
+  /// Whether an event has begun that has not been recorded.
+  bool is_in_event() const { return !u_begins_x_m_.empty(); }
+  /// After serialize in an event: the state in which it has begun, whose displacements are not needed.
+  void resume_event(const InitialState& initial);
+  /// Between events, and in one.
   void serialize(StateArchive& archive);
 
  private:
@@ -108,6 +112,8 @@ class Sequence {
   std::unique_ptr<motion::QuasiDynamicSlip> slow_;  ///< of a law with a state
   statics::Equilibrium at_rest_;                    ///< before the next event
   RestState rest_;                                  ///< of a law without a state empty before the first event
+  std::vector<double>
+      u_begins_x_m_;  ///< [interface nodes] relative to a base where the event under way has begun
   std::vector<record::LoadingRow> loading_;
   std::vector<record::SequenceEvent> events_;
 };

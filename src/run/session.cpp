@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/session.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -13,155 +17,228 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/state.hpp"
+#include "files/checksum.hpp"
+#include "files/files.hpp"
 #include "files/text.hpp"
 #include "problem/source.hpp"
-#include "results/results.hpp"
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
-#include "run/fields.hpp"
+#include "run/sequence.hpp"
 #include "run/shared_states.hpp"
 
 namespace slipfront::run {
 namespace {
 
-/// Wall time between two looks of the outside at a run; longer where writing them takes long.
-constexpr double min_report_interval_s = 2;
-constexpr double report_share = 0.02;
+namespace fs = std::filesystem;
 
-/// Where rows go that rank 0 writes: the other ranks take part in gathering snapshots.
-struct NoOutput final : motion::EventOutput {
-  void sample(const record::History& /*row*/) override {}
-  void snapshot(motion::TimeStepper& stepper) override { stepper.snapshot(); }
-  void probe(const record::ProbeRecord& /*rows*/) override {}
-};
-
-/// A run, on every rank that shares it. Rank 0 alone has the folder, the hooks and the results.
+/// A run on rank 0, from phase to phase. Between two of them, and in ramps and events, it keeps checkpoints.
 class Session {
  public:
-  /// @param folder    null on other ranks
   /// @param sessions  that were before, whose work is in the folder
-  Session(results::ResultFolder* folder, const Problem& problem, const SessionOptions& options,
+  Session(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
           const SessionHooks& hooks, int sessions)
       : folder_(folder),
+        dir_(folder.unfinished()),
         problem_(problem),
         options_(options),
         hooks_(hooks),
         processes_(*options.processes),
         execution_{.threads = options.threads.value_or(suitable_threads(problem))},
-        resumed_(sessions > 0) {
-    if (!is_root()) return;
-    dir_ = folder->unfinished();
-    checkpoints_.emplace(folder->state());
-    head_ = CheckpointHead{.source = problem.source};
-    head_.sessions = sessions + 1;
-  }
+        checkpoints_(folder.state()),
+        head_{.source = problem.source, .sessions = sessions + 1},
+        began_(sessions > 0) {}
 
   /// From a checkpoint, or from the beginning.
   Finished run(std::unique_ptr<Checkpoints::Checkpoint> kept);
-  /// Runs beside rank 0. @param in_event  whether rank 0 has a checkpoint of the event
-  void run_beside(bool in_event) {
-    begin_event(nullptr, in_event);
-    finish(event_->run());
-  }
 
  private:
-  /// Solved, or taken from the shared ones.
-  InitialState initial_state(Checkpoints::Checkpoint* kept);
+  void begin(Checkpoints::Checkpoint* kept);
+  /// The next event, under way. @return false where none begins
+  bool begin_event(Checkpoints::Checkpoint* kept);
+  /// An event on all ranks. @param in_event  whether it goes on from a checkpoint
+  void emplace_event(bool in_event);
+  /// What an event has come to. @return whether the run goes on to another one
+  bool take(const FinishedEvent& event);
+
+  /// The state of a single event: solved, or taken from the shared ones.
+  InitialState first_state(Checkpoints::Checkpoint* kept);
   void begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp);
-  void begin_event(Checkpoints::Checkpoint* kept, bool in_event);
-  void restore_event(Checkpoints::Checkpoint* kept);
-  void emplace_event();
-  bool is_root() const { return processes_.is_root(); }
-  /// Work of rank 0, which the others wait for. @throws as Processes::from_root
-  void at_root(const std::function<void()>& work) {
-    processes_.from_root([&](MessageBuffer& /*to*/) { work(); });
-  }
+  /// That in which the next event of a sequence begins, as Sequence::next.
+  const InitialState* next_state();
+  UserError does_not_rest(const Result& result) const;
+  /// Refuses finished events, by their lists of checksums, and slow slip that are not as they were.
+  void require_parts_unchanged() const;
+
   /// Between linear solutions. @return whether the run goes on
   bool look_at_statics();
-  /// Between steps. @return whether the run goes on
-  bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
+  /// Between steps of a ramp or an event.
+  Wanted look(std::int64_t step, std::int64_t total, double time_s);
   void keep();
-  void write_progress();
-  /// Execution of the event: by default each rank has threads for its subdomain.
-  motion::Execution event_execution() const {
+  void write_status(const Status& status, const std::string& end = "");
+  void fail(const char* status, const std::string& reason) noexcept;
+
+  /// By default each rank has threads for its subdomain.
+  motion::Execution execution_of_event() const {
     if (options_.threads) return execution_;
     return {.threads = std::max(1, execution_.threads / processes_.size())};
   }
-  double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
-  /// The run's event is over: makes its results.
-  Finished finish(motion::Event event);
-  void write_results(const Finished& run);
-  void fail(const char* status, const std::string& reason) noexcept;
+  /// Its name in messages.
+  std::string part() const { return sequence_ ? fmt::format("event {}", number()) : "event"; }
+  /// Of the event that comes next or is under way, from 1.
+  std::size_t number() const { return sequence_->events().size() + 1; }
+  fs::path event_dir() const { return sequence_ ? results::event_folder(dir_, number()) : dir_; }
+  fs::path slow_dir(std::size_t k) const { return results::slow_folder(dir_, k); }
 
-  results::ResultFolder* folder_;
-  std::filesystem::path dir_;
+  results::ResultFolder& folder_;
+  fs::path dir_;
   const Problem& problem_;
   const SessionOptions& options_;
   const SessionHooks& hooks_;
   Processes& processes_;
   motion::Execution execution_;
-  std::optional<Checkpoints> checkpoints_;
+  Checkpoints checkpoints_;
   CheckpointHead head_;
-  Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), reported_ = Clock::now();
-  bool resumed_;
-  bool began_ = false;  ///< before that a new run has nothing to keep
-  double kept_time_s_ = 0, report_interval_s_ = min_report_interval_s;
+  bool began_;  ///< before that a new run has nothing to keep
+  Clock::time_point kept_ = Clock::now();
+  double kept_time_s_ = 0;
+  std::string keeps_;  ///< note of a checkpoint that was asked for
 
-  InitialState initial_;
-  RuptureOutlook rupture_;                  ///< of it
-  motion::TimeStepper* stepper_ = nullptr;  ///< of the ramp or of the event
-  motion::RampRun* ramp_ = nullptr;
-  std::unique_ptr<motion::TimeStepper> event_stepper_;
-  std::optional<motion::EventRun> event_;
-  std::optional<results::ResultStream> stream_;
-  NoOutput no_output_;
+  std::optional<Sequence> sequence_;
+  std::vector<std::string> sums_;       ///< of the lists of checksums of the events that are done
+  std::vector<std::string> slow_sums_;  ///< of the histories of slow slip before them
+  motion::Stepper* ramp_stepper_ = nullptr;
+  motion::RampRun* ramp_ = nullptr;  ///< under way
+  EventRoot root_;
+  std::optional<EventPhase> event_;  ///< under way
 };
-
-/// Reads from a checkpoint, which is rank 0's. @throws UserError naming its file
-template <class Read>
-void read_from(Checkpoints::Checkpoint* kept, Read&& read) {
-  try {
-    read();
-  } catch (const StateError& error) {
-    if (kept == nullptr) throw;
-    throw UserError("{}: {}; start a new run", kept->body.path().string(), error.what());
-  }
-}
 
 Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
-    if (kept) head_.wall_s = kept->head.wall_s;
-    write_status(dir_, problem_, {"running", "before the event", head_.sessions});
-    begin_event(kept.get(), kept && kept->head.in_event);
-    kept.reset();
-    return finish(event_->run());
+    begin(kept.get());
+    Finished finished;
+    while (event_ || begin_event(kept.get())) {
+      kept.reset();
+      finished.last = event_->run();
+      processes_.set_awaited(false);
+      event_.reset();
+      if (!take(finished.last)) break;
+    }
+    if (!sequence_) {
+      if (status_of(finished.last.result).name == "complete") folder_.publish();
+      return finished;
+    }
+    finished.events = sequence_->events();
+    finished.loading = sequence_->loading();
+    finished.end = sequence_->end();
+    if (finished.end.empty())
+      finished.end =
+          fmt::format("no event begins before the loading ends, at {:g} s", finished.loading.back().time_s);
+    problem::write_case(dir_, problem_.source);
+    try {
+      require_parts_unchanged();
+    } catch (const UserError& error) {
+      throw WriteError("{}", error.what());  // while this program has the folder
+    }
+    write_status({"complete", "", head_.sessions}, finished.end);
+    folder_.publish();
+    return finished;
   } catch (const Interrupted& error) {
     fail("interrupted", error.what());
-    if (!began_) throw;
-    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(*folder_)));
+    if (!began_ && !sequence_) throw;
+    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(folder_)));
   } catch (const BlowUp& error) {
     fail("blew_up", error.what());
     throw;
   } catch (const std::exception& error) {
-    if (began_ || resumed_)
+    if (began_)
       fail("failed", error.what());
     else
-      folder_->abandon();
+      folder_.abandon();
     throw;
   }
 }
 
-void Session::fail(const char* status, const std::string& reason) noexcept {
-  try {
-    if (stream_) stream_->hand_over();
-    write_status(dir_, problem_, {status, reason, head_.sessions});
-  } catch (...) {
-    // What made the run fail may also keep its reason from being written.
+void Session::begin(Checkpoints::Checkpoint* kept) {
+  write_status({"running", "before the event", head_.sessions});
+  if (problem_.is_sequence())
+    sequence_.emplace(
+        problem_, [this](std::int64_t, std::int64_t) { return look_at_statics(); }, processes_);
+  if (kept == nullptr) return;
+  if (sequence_) {
+    read_from(&kept->body, [&] {
+      kept->body(sums_, slow_sums_);
+      sequence_->serialize(kept->body);
+      const std::size_t n_slow = problem_.is_slow() ? sums_.size() + (kept->head.in_event ? 1 : 0) : 0;
+      require_possible(sums_.size() == sequence_->events().size() && slow_sums_.size() == n_slow &&
+                           sequence_->is_in_event() == kept->head.in_event,
+                       "events");
+      if (!kept->head.in_event) kept->body.close();
+    });
+    require_parts_unchanged();
+    for (std::size_t k = 0; k < sums_.size(); ++k) files::require_intact(results::event_folder(dir_, k + 1));
   }
+  if (!kept->head.in_event) return;
+  emplace_event(true);
+  event_->restore(&kept->body);
+  if (sequence_) sequence_->resume_event(event_->initial());
+  kept_time_s_ = event_->time_s();
 }
 
-InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
-  if (options_.initial_state) return options_.initial_state();
+bool Session::begin_event(Checkpoints::Checkpoint* kept) {
+  InitialState initial;
+  if (sequence_) {
+    if (!sequence_->end().empty()) return false;
+    const auto* next = next_state();
+    if (next == nullptr) return false;
+    initial = *next;
+    results::remove_tree(event_dir());  // what a session that was killed has left
+    files::make_folders(event_dir());
+    problem::write_case(event_dir(), problem_.source);
+  } else {
+    initial = first_state(kept);
+    ramp_ = nullptr;
+  }
+  if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
+  emplace_event(false);
+  event_->begin(std::move(initial));
+  began_ = true;
+  kept_ = Clock::now();
+  kept_time_s_ = 0;
+  return true;
+}
+
+void Session::emplace_event(bool in_event) {
+  auto message = packed(true, in_event);
+  problem::pack_case(problem_, message);
+  processes_.broadcast(std::move(message));
+  processes_.set_awaited(true);
+  root_ = {event_dir(),
+           folder_.state(),
+           head_.sessions,
+           [this](std::int64_t step, std::int64_t total, double time_s) { return look(step, total, time_s); },
+           [this] { keep(); },
+           hooks_.note};
+  event_.emplace(problem_, processes_, execution_of_event(), &root_, options_.observers);
+}
+
+bool Session::take(const FinishedEvent& event) {
+  if (!sequence_) return false;
+  const auto& [end, reason] = std::tie(event.result.event.end, event.result.event.reason);
+  if (end == motion::EventEnd::interrupted)
+    throw Interrupted(fmt::format("interrupted in {} at t = {:.4g} s", part(), event.result.event.time_s));
+  if (end == motion::EventEnd::blow_up)
+    throw BlowUp(fmt::format("{}: {}; {}", part(), reason, what_was_kept(folder_)));
+  if (end != motion::EventEnd::quiet) throw does_not_rest(event.result);
+  results::seal(event_dir());
+  sums_.push_back(files::sha256_of_file(event_dir() / files::checksum_list));
+  sequence_->record_event(event.result);
+  write_status({"running", "", head_.sessions});
+  keep();
+  if (hooks_.event_done) hooks_.event_done(sums_.size(), sequence_->events().back());
+  return true;
+}
+
+InitialState Session::first_state(Checkpoints::Checkpoint* kept) {
   std::optional<SharedStates> shared;
   if (options_.shared_states) shared.emplace(*options_.shared_states);
   if (shared)
@@ -169,7 +246,10 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
   auto initial = make_initial_state(
       problem_,
       [&](std::int64_t step, std::int64_t total) {
-        return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
+        if (ramp_ == nullptr) return look_at_statics();
+        const auto wanted = look(step, total, ramp_stepper_->time_s());
+        if (wanted.checkpoint) keep();
+        return !wanted.stop;
       },
       execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); },
       processes_);
@@ -178,73 +258,80 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
 }
 
 void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
-  if (kept != nullptr) {
-    read_from(kept, [&] {
+  if (kept != nullptr)
+    read_from(&kept->body, [&] {
       read_motion(&kept->body, stepper, {});
       kept->body(ramp);
       kept->body.close();
     });
-  }
   began_ = true;
-  stepper_ = &stepper;
+  ramp_stepper_ = &stepper;
   ramp_ = &ramp;
   kept_time_s_ = stepper.time_s();
 }
 
-void Session::begin_event(Checkpoints::Checkpoint* kept, bool in_event) {
-  if (in_event) {
-    restore_event(kept);
-  } else {
-    at_root([&] {
-      initial_ = initial_state(kept);
-      ramp_ = nullptr;
-      stepper_ = nullptr;
-      if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
-    });
-    event_stepper_ = start_event(problem_, initial_, event_execution(), processes_);
-    at_root([&] { stream_.emplace(dir_, run_files(problem_, initial_, event_stepper_->step_s())); });
-    emplace_event();
+const InitialState* Session::next_state() {
+  std::optional<results::ResultStream> slow;
+  // Ordinary slow slip has fewer rows.
+  std::size_t n_rows = 0, told_at = 4096;
+  const auto take_row = [&](const record::History& row) {
+    if (!slow) {
+      files::make_folders(slow_dir(number()));
+      slow.emplace(slow_dir(number()), results::RunFiles{history_table(problem_, row.x_m), {}});
+      began_ = true;
+    }
+    slow->sample(row);
+    if (++n_rows < told_at) return;
+    told_at *= 2;
+    double fastest_m_per_s = 0;
+    for (const double V : row.slip_rate_m_per_s) fastest_m_per_s = std::max(fastest_m_per_s, std::abs(V));
+    hooks_.note(fmt::format("slow slip before {}: {} rows to {:.6g} s, fastest node {:.3g} m/s", part(),
+                            n_rows, row.time_s.front(), fastest_m_per_s));
+  };
+  try {
+    const auto* initial = sequence_->next(take_row);
+    if (slow) {
+      slow->finish();
+      slow_sums_.push_back(files::sha256_of_file(slow_dir(number()) / results::history_file));
+    }
+    return initial;
+  } catch (const UserError& error) {
+    if (sequence_->events().empty()) throw;
+    Message message(fmt::format("{} is not found: {}; {}", part(), error.what(), what_was_kept(folder_)));
+    message.keys = error.keys();
+    throw UserError(message);
   }
-  at_root([&] {
-    rupture_ = rupture_outlook(problem_, initial_.subcritical, initial_.tributary_m, initial_.healed);
-  });
-  stepper_ = event_stepper_.get();
-  kept_time_s_ = stepper_->time_s();
-  event_began_ = kept_ = Clock::now();
-  at_root([&] { write_static(dir_, problem_, initial_); });
-  began_ = true;
-  write_progress();
 }
 
-void Session::restore_event(Checkpoints::Checkpoint* kept) {
-  const auto with_file = [&](const std::function<void()>& read) { at_root([&] { read_from(kept, read); }); };
-  with_file([&] { initial_ = read_initial_state(kept->body, problem_, processes_); });
-  const auto loads = from_root(processes_, [&] { return loads_of_event(problem_, initial_); });
-  event_stepper_ = make_stepper(problem_, initial_, event_execution(), processes_);
-  read_from(kept, [&] { read_motion(kept ? &kept->body : nullptr, *event_stepper_, loads); });
-  with_file([&] {
-    results::ResultStream::Extents extents;
-    kept->body(extents);
-    stream_.emplace(dir_, run_files(problem_, initial_, event_stepper_->step_s()), extents);
-  });
-  emplace_event();
-  auto of_event = processes_.from_root([&](MessageBuffer& to) {
-    read_from(kept, [&] {
-      kept->body(*event_);
-      kept->body.close();
-    });
-    if (processes_.size() > 1) to.append(packed(*event_));  // as large as the record of slip
-  });
-  if (!is_root()) MessageArchive::reader(of_event)(*event_);
-  read_from(kept, [&] { processes_.together([&] { event_->require_restored(); }); });
+UserError Session::does_not_rest(const Result& result) const {
+  const auto what = fmt::format("{} has not come to rest: {}", part(), end_of_event(result));
+  const auto& row = result.event.interface_at_end;
+  const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
+  if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
+    return problem_.above().machine.is_rigid()
+               ? UserError(
+                     "{}, and slip does not slow down: the load drives it on; choose a slower one ({}), or "
+                     "press harder; {}",
+                     what, Key("loading.shear_speed_over_c_L"), what_was_kept(folder_))
+               : UserError(
+                     "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft "
+                     "machine do; choose others ({}, {}), or a later {}; {}",
+                     what, Key("loading.shear_stiffness_Pa"), Key("loading.normal_stiffness_Pa"),
+                     Key("time.end_s"), what_was_kept(folder_));
+  return UserError("{}; choose a later {}, a larger {}, or edges that absorb; {}", what, Key("time.end_s"),
+                   Key("material.stiffness_damping_s"), what_was_kept(folder_));
 }
 
-void Session::emplace_event() {
-  event_.emplace(run::begin_event(
-      problem_, initial_, *event_stepper_,
-      [&](std::int64_t step, std::int64_t total) { return look("event", step, total, stepper_->time_s()); },
-      is_root() ? static_cast<motion::EventOutput*>(&*stream_) : &no_output_,
-      options_.observers ? options_.observers() : motion::Observers{}));
+void Session::require_parts_unchanged() const {
+  const auto require_sum = [](const fs::path& file, const std::string& sum) {
+    if (!files::is_there(file) || files::sha256_of_file(file) != sum)
+      throw UserError("{}: was changed since it was finished; restore it, or start a new run",
+                      file.parent_path().string());
+  };
+  for (std::size_t k = 0; k < sums_.size(); ++k)
+    require_sum(results::event_folder(dir_, k + 1) / files::checksum_list, sums_[k]);
+  for (std::size_t k = 0; k < slow_sums_.size(); ++k)
+    require_sum(slow_dir(k + 1) / results::history_file, slow_sums_[k]);
 }
 
 bool Session::look_at_statics() {
@@ -253,97 +340,54 @@ bool Session::look_at_statics() {
   return request != Request::stop;
 }
 
-bool Session::look(const char* part, std::int64_t step, std::int64_t total, double time_s) {
-  struct Wanted {
-    Request request = Request::none;
-    bool checkpoint = false, report = false;
-  } wanted;
-  if (is_root()) {
-    hooks_.progress(part, step, total);
-    wanted.request = hooks_.request();
-    wanted.checkpoint = wanted.request != Request::none ||
-                        seconds_since(kept_) >= options_.keep_every_wall_s ||
-                        time_s - kept_time_s_ >= options_.keep_every_s;
-    wanted.report = event_ && seconds_since(reported_) >= report_interval_s_;
-  }
-  if (event_) wanted = unpacked<Wanted>(processes_.broadcast(packed(wanted)));
-  if (wanted.checkpoint) keep();
-  if (wanted.request == Request::keep && is_root())
-    hooks_.note(fmt::format("checkpoint at t = {:.6g} s of the {}", time_s, part));
-  if (wanted.report) write_progress();
-  return wanted.request != Request::stop;
+Wanted Session::look(std::int64_t step, std::int64_t total, double time_s) {
+  const auto name = ramp_ != nullptr ? "ramp" : part();
+  hooks_.progress(name.c_str(), step, total);
+  const auto request = hooks_.request();
+  if (request == Request::keep) keeps_ = fmt::format("checkpoint at t = {:.6g} s of the {}", time_s, name);
+  Wanted wanted;
+  wanted.stop = request == Request::stop;
+  wanted.checkpoint = request != Request::none || seconds_since(kept_) >= options_.keep_every_wall_s ||
+                      time_s - kept_time_s_ >= options_.keep_every_s;
+  return wanted;
 }
 
 void Session::keep() {
-  if (!is_root()) return stepper_->keep({});
-  auto head = head_;
-  head.in_event = event_.has_value();
-  if (head.in_event) head.wall_s = wall_s();
-  // The streams first: a checkpoint must not count on rows that are not there yet.
-  auto extents = stream_ ? stream_->keep() : results::ResultStream::Extents{};
-  checkpoints_->keep(head, [&](results::OutputArchive& archive) {
-    if (head.in_event) archive(initial_);
-    write_motion(archive, *stepper_);
-    if (head.in_event)
-      archive(extents, *event_);
-    else
+  head_.in_event = event_.has_value();
+  checkpoints_.keep(head_, [&](results::OutputArchive& archive) {
+    if (sequence_) {
+      archive(sums_, slow_sums_);
+      sequence_->serialize(archive);
+    }
+    if (event_) event_->write(archive);
+    if (ramp_ != nullptr) {
+      write_motion(archive, *ramp_stepper_);
       archive(*ramp_);
+    }
   });
   kept_ = Clock::now();
-  kept_time_s_ = stepper_->time_s();
+  if (event_ || ramp_ != nullptr) kept_time_s_ = event_ ? event_->time_s() : ramp_stepper_->time_s();
+  if (!keeps_.empty()) hooks_.note(std::exchange(keeps_, {}));
 }
 
-void Session::write_progress() {
-  const auto start = Clock::now();
-  auto breakdown = stepper_->breakdown();
-  if (!is_root()) {
-    collect(problem_, *stepper_, {});
-    return;
+void Session::write_status(const Status& status, const std::string& end) {
+  if (!problem_.is_sequence()) return run::write_status(dir_, problem_, status);
+  if (sequence_)
+    write_sequence(dir_, problem_, sequence_->events(), sequence_->loading(), end, status);
+  else
+    write_sequence(dir_, problem_, {}, {}, end, status);
+}
+
+void Session::fail(const char* status, const std::string& reason) noexcept {
+  try {
+    if (event_) {
+      event_->hand_over();
+      run::write_status(event_dir(), problem_, {status, reason, head_.sessions});
+    }
+    if (!event_ || sequence_) write_status({status, reason, head_.sessions});
+  } catch (...) {
+    // What made the run fail may also keep its reason from being written.
   }
-  motion::Event so_far;
-  so_far.steps = stepper_->step();
-  so_far.time_s = stepper_->time_s();
-  const auto& energies = event_->energies();
-  so_far.energies = {energies.front(), energies.back()};
-  so_far.record = event_->record();
-  so_far.breakdown = std::move(breakdown);
-  so_far.tip_slip = event_->tip_slip();
-  auto result = collect(problem_, *stepper_, std::move(so_far));
-  stream_->hand_over();
-  result.stepping_wall_s = wall_s();
-  analyse(result, initial_, rupture_);
-  write_so_far(dir_, result, energies, initial_, {"running", "", head_.sessions});
-  reported_ = Clock::now();
-  report_interval_s_ = std::max(min_report_interval_s, seconds_since(start) / report_share);
-}
-
-Finished Session::finish(motion::Event event) {
-  Finished run{collect(problem_, *stepper_, std::move(event)), {}};
-  run.result.stepping_wall_s = wall_s();
-  event_.reset();
-  event_stepper_.reset();
-  run.initial = std::move(initial_);
-  at_root([&] {
-    analyse(run.result, run.initial, rupture_);
-    write_results(run);
-  });
-  write_fields(folder_, problem_, processes_, hooks_.note);
-  at_root([&] {
-    if (status_of(run.result).name == "complete") folder_->publish();
-  });
-  return run;
-}
-
-void Session::write_results(const Finished& run) {
-  auto status = status_of(run.result);
-  status.sessions = head_.sessions;
-  // As they are, whatever has happened to the files meanwhile.
-  problem::write_case(dir_, problem_.source);
-  write_static(dir_, problem_, run.initial);
-  // What takes no time first: the program may be given none after an interruption.
-  write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
-  stream_->finish(numbers_of(status));
-  stream_.reset();
 }
 
 /// Refuses a case of unfinished work that is not the one that was begun.
@@ -357,69 +401,20 @@ void require_unchanged(const std::filesystem::path& dir, const problem::Source& 
                       (dir / name).string());
 }
 
-/// On rank 0, with the others in serve_ranks.
-Finished run_shared(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
-                    const SessionHooks& hooks, int sessions, std::unique_ptr<Checkpoints::Checkpoint> kept) {
-  Session session(&folder, problem, options, hooks, sessions);
-  auto message = packed(true, kept && kept->head.in_event);
-  problem::pack_case(problem, message);
-  options.processes->broadcast(std::move(message));
-  options.processes->set_awaited(true);
-  auto finished = session.run(std::move(kept));
-  options.processes->set_awaited(false);
-  return finished;
-}
-
 void require_room(const results::ResultFolder& folder, const Problem& problem) {
   folder.require_room(problem.is_sequence() ? problem.sequence.max_events : 0);
 }
 
-}  // namespace
-
-int suitable_threads(const Problem& problem) {
-  constexpr double nodes_per_thread = 20'000;
-  constexpr unsigned max_threads = 4;
-  const double useful = mesh_size(problem).n_nodes / nodes_per_thread;
-  const double most = std::clamp(std::thread::hardware_concurrency(), 1U, max_threads);
-  return static_cast<int>(std::clamp(useful, 1.0, most));
-}
-
-void begin_work(results::ResultFolder& folder, const Problem& problem) {
-  require_room(folder, problem);
-  try {
-    folder.begin();
-    problem::write_case(folder.unfinished(), problem.source);
-    Checkpoints(folder.state()).begin(CheckpointHead{.source = problem.source});
-  } catch (const WriteError&) {
-    folder.abandon();
-    throw;
-  }
-}
-
-Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
-                  const SessionHooks& hooks) {
-  begin_work(folder, problem);
-  return run_shared(folder, problem, options, hooks, 0, {});
-}
-
-Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
-                const SessionHooks& hooks) {
-  auto [problem, kept, sessions] = load_unfinished(folder, expected, hooks.note);
-  return run_shared(folder, problem, options, hooks, sessions, std::move(kept));
-}
-
-Problem unfinished_case(const results::ResultFolder& folder, const Problem* expected) {
-  const auto file = folder.unfinished() / problem::case_file;
-  if (!folder.has_unfinished() || !files::is_there(file))
-    throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
-  auto problem = problem::read_problem(folder.unfinished());
-  if (expected != nullptr) require_same_case(expected->source, problem.source);
-  return problem;
-}
+/// The work that was left unfinished in a folder, with its last checkpoint that is intact, or null.
+struct UnfinishedWork {
+  Problem problem;
+  std::unique_ptr<Checkpoints::Checkpoint> kept;
+  int sessions = 1;  ///< so far
+};
 
 UnfinishedWork load_unfinished(const results::ResultFolder& folder, const Problem* expected,
                                const std::function<void(const std::string&)>& note) {
-  UnfinishedWork work{unfinished_case(folder, expected), Checkpoints(folder.state()).last(note)};
+  UnfinishedWork work{unfinished_problem(folder, expected), Checkpoints(folder.state()).last(note)};
   const auto& problem = work.problem;
   require_room(folder, problem);
   // A session that was killed has left no checkpoint of its own, perhaps.
@@ -437,6 +432,54 @@ UnfinishedWork load_unfinished(const results::ResultFolder& folder, const Proble
   return work;
 }
 
+/// Whether all files are there that a folder's list of checksums names, and those of the lists among them.
+bool has_all(const std::filesystem::path& dir) {
+  const auto sums = files::read_checksums(dir);
+  return !sums.empty() && std::ranges::all_of(sums, [&](const auto& named) {
+    const auto file = dir / named.first;
+    if (!files::is_there(file)) return false;
+    return file.filename() != files::checksum_list || has_all(file.parent_path());
+  });
+}
+
+}  // namespace
+
+int suitable_threads(const Problem& problem) {
+  constexpr double nodes_per_thread = 20'000;
+  constexpr unsigned max_threads = 4;
+  const double useful = mesh_size(problem).n_nodes / nodes_per_thread;
+  const double most = std::clamp(std::thread::hardware_concurrency(), 1U, max_threads);
+  return static_cast<int>(std::clamp(useful, 1.0, most));
+}
+
+Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
+                  const SessionHooks& hooks) {
+  require_room(folder, problem);
+  try {
+    folder.begin();
+    problem::write_case(folder.unfinished(), problem.source);
+    Checkpoints(folder.state()).begin({.source = problem.source});
+  } catch (const WriteError&) {
+    folder.abandon();
+    throw;
+  }
+  return Session(folder, problem, options, hooks, 0).run({});
+}
+
+Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
+                const SessionHooks& hooks) {
+  auto [problem, kept, sessions] = load_unfinished(folder, expected, hooks.note);
+  return Session(folder, problem, options, hooks, sessions).run(std::move(kept));
+}
+
+Problem unfinished_problem(const results::ResultFolder& folder, const Problem* expected) {
+  if (!folder.has_unfinished() || !files::is_there(folder.unfinished() / problem::case_file))
+    throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
+  auto problem = problem::read_problem(folder.unfinished());
+  if (expected != nullptr) require_same_case(expected->source, problem.source);
+  return problem;
+}
+
 void serve_ranks(Processes& processes) {
   // What a signal asks for is rank 0's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
@@ -446,9 +489,9 @@ void serve_ranks(Processes& processes) {
       if (!unpacked<bool>(message)) return;
       const bool in_event = unpacked<bool>(message);
       const auto problem = problem::unpack_case(message);
-      SessionOptions options;
-      options.processes = &processes;
-      Session(nullptr, problem, options, {}, 0).run_beside(in_event);
+      EventPhase event(problem, processes, {}, nullptr, {});
+      in_event ? event.restore(nullptr) : event.begin({});
+      event.run();
     } catch (const FailedElsewhere&) {
     }
 }
@@ -473,20 +516,6 @@ void require_came_to_end(const Result& result, const results::ResultFolder& fold
   if (event.end == motion::EventEnd::interrupted)
     throw Interrupted(fmt::format("interrupted at t = {:.4g} s; {}", event.time_s, how_to_resume(folder)));
 }
-
-namespace {
-
-/// Whether all files are there that a folder's list of checksums names, and those of the lists among them.
-bool has_all(const std::filesystem::path& dir) {
-  const auto sums = files::read_checksums(dir);
-  return !sums.empty() && std::ranges::all_of(sums, [&](const auto& named) {
-    const auto file = dir / named.first;
-    if (!files::is_there(file)) return false;
-    return file.filename() != files::checksum_list || has_all(file.parent_path());
-  });
-}
-
-}  // namespace
 
 bool is_complete(const std::filesystem::path& dir) {
   const auto is_there = [&](const char* name) { return files::is_there(dir / name); };

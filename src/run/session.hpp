@@ -6,10 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/numbers.hpp"
+#include "record/sequence.hpp"
 #include "results/folder.hpp"
-#include "run/checkpoint.hpp"
+#include "run/event_phase.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -30,65 +32,57 @@ struct SessionOptions {
   double keep_every_wall_s = 300;            ///< wall time between checkpoints
   double keep_every_s = infinity;            ///< simulated time between them
   std::optional<std::string> shared_states;  ///< folder of SharedStates, see there
-  /// Makes the state in which the event begins, on rank 0; else it is that of the case.
-  std::function<InitialState()> initial_state;
-  /// Makes further observers of the event, where it begins and where it goes on.
+  /// Makes further observers of each event, where it begins and where it goes on.
   std::function<motion::Observers()> observers;
-  Processes* processes = &one_process();  ///< the ranks that share the event
+  Processes* processes = &one_process();  ///< the ranks that share the events
 };
 
-/// All three are called by the thread that steps.
+/// All are called by the thread that steps.
 struct SessionHooks {
-  /// Told the progress of "ramp" or "event".
+  /// Told the progress of a part, "ramp" or "event", in a sequence "event 1" and so on.
   std::function<void(const char* part, std::int64_t step, std::int64_t total)> progress;
   std::function<Request()> request;
   std::function<void(const std::string& note)> note;
+  /// Told each event of a sequence that has come to rest, with its number from 1.
+  std::function<void(std::size_t number, const record::SequenceEvent& event)> event_done = {};
 };
 
 /// A run that has come to its end.
 struct Finished {
-  Result result;
-  InitialState initial;
+  FinishedEvent last;  ///< its event; of a sequence the last one of this session
+  /// Of a sequence.
+  std::vector<record::SequenceEvent> events = {};
+  std::vector<record::LoadingRow> loading = {};
+  std::string end = {};  ///< why, in words
 };
 
 /// The kind of work that a run is, see results::ResultFolder.
 inline constexpr const char* run_work = "run";
 
-/// Runs a case of one event into its folder. While it goes, DIR/unfinished has the case, run.json with its
-/// status, and what there is of the results; every now and then a checkpoint is kept there, from which resume
-/// goes on. A run that is complete is published to DIR; one that was interrupted or blew up stays where it
-/// is.
-/// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
-/// Interrupted in ramp or statics; WriteError, what there is being kept.
+/// Runs a problem into its folder: one event, or a sequence of them, each in a folder of its own, events/0001
+/// and so on. While it goes, DIR/unfinished has the case, run.json or sequence.json with its status, and what
+/// there is of the results; every now and then a checkpoint is kept there, from which resume goes on. A run
+/// that is complete is published to DIR; one that was interrupted or blew up stays where it is.
+/// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet; of a
+/// sequence also where an event does not come to rest, blows up, or is interrupted. Interrupted in ramp,
+/// statics or slow slip; WriteError, what there is being kept.
 Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
                   const SessionHooks& hooks);
 
 /// Goes on with a run that was left unfinished, as if it had never stopped: from its last checkpoint that is
 /// intact, or from its beginning where there is none. Ramps solve their statics again.
-/// @param expected  a case that it must be, or null
-/// @throws UserError where there is none, or it is one of another program or case
+/// @param expected  a problem whose case it must be, or null
+/// @throws UserError where there is none, or it is one of another program or case, or finished parts were
+/// changed
 Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
                 const SessionHooks& hooks);
 
-/// Begins the work of a case in its folder.
-/// @throws WriteError, nothing being kept
-void begin_work(results::ResultFolder& folder, const Problem& problem);
-/// The case of the work that was left unfinished in a folder.
-/// @param expected  a case that it must be, or null
+/// The problem of the work that was left unfinished in a folder.
+/// @param expected  a problem whose case it must be, or null
 /// @throws UserError where there is none, or it is another case
-Problem unfinished_case(const results::ResultFolder& folder, const Problem* expected);
-/// That work, with its last checkpoint that is intact, or null.
-struct UnfinishedWork {
-  Problem problem;
-  std::unique_ptr<Checkpoints::Checkpoint> kept;
-  int sessions = 1;  ///< so far
-};
-/// @param note  receives a message for each damaged checkpoint
-/// @throws UserError as unfinished_case, and where the checkpoint is of another program or case
-UnfinishedWork load_unfinished(const results::ResultFolder& folder, const Problem* expected,
-                               const std::function<void(const std::string&)>& note);
+Problem unfinished_problem(const results::ResultFolder& folder, const Problem* expected);
 
-/// On the ranks but 0: their parts of the runs that rank 0 begins or goes on with, until it releases them.
+/// On the ranks but 0: their parts of the events that rank 0 begins or goes on with, until it releases them.
 void serve_ranks(Processes& processes);
 void stop_ranks(Processes& processes);
 

@@ -101,13 +101,13 @@ TEST(Observers, SeeAllOfARunThatStoppedAndChangeNothing) {
   EXPECT_EQ(seen.steps, 50);
   const auto result = run(observed.path(), test::undisturbed, true, observers);
   EXPECT_EQ(seen.ends, 1);  // of the second session
-  EXPECT_EQ(seen.steps, expected.result.event.steps);
+  EXPECT_EQ(seen.steps, expected.last.result.event.steps);
   EXPECT_EQ(seen.updates, seen.steps * config.time.interface_substeps);
-  const double last_begins_s = expected.result.event.time_s - expected.result.step_s;
+  const double last_begins_s = expected.last.result.event.time_s - expected.last.result.step_s;
   ASSERT_EQ(std::ssize(seen.time_s), static_cast<std::ptrdiff_t>(last_begins_s / 10e-6) + 1);
   for (std::size_t k = 0; k < seen.time_s.size(); ++k) {
     EXPECT_GE(seen.time_s[k], 10e-6 * static_cast<double>(k));
-    EXPECT_LT(seen.time_s[k], 10e-6 * static_cast<double>(k) + result.result.step_s);
+    EXPECT_LT(seen.time_s[k], 10e-6 * static_cast<double>(k) + result.last.result.step_s);
   }
   for (const char* file : {"interface.h5", "fronts.csv", "fracture.csv", "energy.csv"})
     EXPECT_EQ(test::read_file(plain / file), test::read_file(observed / file)) << file;

@@ -18,7 +18,7 @@
 #include "problem/contact.hpp"
 #include "problem/problem.hpp"
 #include "results/folder.hpp"
-#include "run/sequence_session.hpp"
+#include "run/session.hpp"
 #include "sessions.hpp"
 
 namespace slipfront::run {
@@ -364,17 +364,15 @@ TEST(Sequence, GoesOnUnderAStrengthThatLeavesNodesBeyondMuS) {
 
 // In folders.
 
-FinishedSequence start_sequence(
-    const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed,
-    const EventDone& done = [](std::size_t, const record::SequenceEvent&) {}) {
+Finished start_sequence(const fs::path& dir, const input::Case& config,
+                        const SessionHooks& hooks = undisturbed) {
   results::ResultFolder folder(dir, run_work);
-  return run_sequence_into(folder, make_problem(config), test::with_threads(1), hooks, done);
+  return run_into(folder, make_problem(config), test::with_threads(1), hooks);
 }
 
-FinishedSequence resume_sequence_in(const fs::path& dir, const SessionHooks& hooks = undisturbed) {
+Finished resume_sequence_in(const fs::path& dir, const SessionHooks& hooks = undisturbed) {
   results::ResultFolder folder(dir, run_work);
-  return resume_sequence(folder, nullptr, test::with_threads(1), hooks,
-                         [](std::size_t, const record::SequenceEvent&) {});
+  return resume(folder, nullptr, test::with_threads(1), hooks);
 }
 
 /// The files of all events and of the loading, which do not depend on when they were written.
@@ -500,8 +498,8 @@ TEST_F(SequenceInAFolder, IsTheSameAfterItWasStoppedBetweenTwoEvents) {
   bool stop = false;
   SessionHooks hooks = undisturbed;
   hooks.request = [&] { return stop ? Request::stop : Request::none; };
-  const auto done = [&](std::size_t number, const record::SequenceEvent&) { stop = number == 2; };
-  EXPECT_THROW(start_sequence(dir_, sequence_case(3), hooks, done), Interrupted);
+  hooks.event_done = [&](std::size_t number, const record::SequenceEvent&) { stop = number == 2; };
+  EXPECT_THROW(start_sequence(dir_, sequence_case(3), hooks), Interrupted);
   expect_same_as_whole(sequence_case(3));
 }
 
@@ -533,17 +531,23 @@ TEST_F(SequenceInAFolder, APartThatIsDamagedWhileALaterOneRunsIsNotPublished) {
   }
 }
 
-/// As if the program had been killed in between.
-TEST_F(SequenceInAFolder, AnEventWithoutItsCaseFileYetBeginsAnew) {
+/// As if the program had been killed before the event's first checkpoint.
+TEST_F(SequenceInAFolder, AnEventWithoutACheckpointBeginsAnew) {
   stop(sequence_case(2), "event 2", 10);
-  fs::remove(unfinished_ / "events/0002/unfinished/case.resolved.toml");
+  const auto state = unfinished_ / "state";
+  std::vector<fs::path> checkpoints;
+  for (const auto& entry : fs::directory_iterator(state))
+    if (entry.path().filename().string().starts_with("checkpoint")) checkpoints.push_back(entry.path());
+  ASSERT_EQ(checkpoints.size(), 2U);  // behind the first event, and in the second
+  fs::remove(std::ranges::max(checkpoints));
+  test::write_file(unfinished_ / "events/0002/fields.vtkhdf", "left by it");
   expect_same_as_whole(sequence_case(2));
 }
 
 TEST_F(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
   const WriteError full("the disk is full");
   EXPECT_THROW(start_sequence(dir_, sequence_case(2), failing_in("event 1", 200, full)), WriteError);
-  EXPECT_TRUE(fs::exists(unfinished_ / "events/0001/unfinished/interface.h5"));
+  EXPECT_TRUE(fs::exists(unfinished_ / "events/0001/interface.h5"));
   expect_same_as_whole(sequence_case(2));
 }
 
@@ -588,9 +592,10 @@ TEST_F(SequenceInAFolder, CountsTheSessionsThatWereKilled) {
     EXPECT_THROW(resume_sequence_in(dir_, failing_in(event, 100, Killed())), Killed);
   resume_sequence_in(dir_);
   EXPECT_EQ(sessions_of(dir_ / sequence_file), 5);
+  // Those of the sequence until the event has ended.
   EXPECT_EQ(sessions_of(dir_ / "events/0001" / run_file), 3);
-  EXPECT_EQ(sessions_of(dir_ / "events/0002" / run_file), 3);
-  EXPECT_EQ(sessions_of(dir_ / "events/0003" / run_file), 1);
+  EXPECT_EQ(sessions_of(dir_ / "events/0002" / run_file), 5);
+  EXPECT_EQ(sessions_of(dir_ / "events/0003" / run_file), 5);
 }
 
 TEST_F(SequenceInAFolder, WhatIsInTheWayIsRefusedBeforeAnythingIsComputed) {

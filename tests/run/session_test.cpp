@@ -148,9 +148,9 @@ TEST(Session, GoesOnAsIfItHadNeverStopped) {
     const auto expected = results_of(config);
     {
       const test::TemporaryFolder folder;
-      EXPECT_EQ(start(folder.path(), config, stopping_at("event", 50)).result.event.end,
+      EXPECT_EQ(start(folder.path(), config, stopping_at("event", 50)).last.result.event.end,
                 motion::EventEnd::interrupted);
-      EXPECT_EQ(resume(folder.path(), stopping_at("event", 100), nullptr, 2).result.event.steps, 100);
+      EXPECT_EQ(resume(folder.path(), stopping_at("event", 100), nullptr, 2).last.result.event.steps, 100);
       resume(folder.path(), undisturbed, &config);
       expect_same(results_in(folder.path()), expected);
       EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
@@ -165,8 +165,8 @@ TEST(Session, GoesOnAsIfItHadNeverStopped) {
     };
     hooks.request = [&] { return after && after->is_wanted() ? Request::stop : Request::none; };
     const auto begun = start(folder.path(), config, hooks);
-    EXPECT_EQ(begun.result.event.end, motion::EventEnd::interrupted);
-    EXPECT_NE(begun.result.event.steps % 50, 0);
+    EXPECT_EQ(begun.last.result.event.end, motion::EventEnd::interrupted);
+    EXPECT_NE(begun.last.result.event.steps % 50, 0);
     after.reset();
     resume(folder.path());
     expect_same(results_in(folder.path()), expected);
@@ -229,10 +229,10 @@ TEST_F(InterruptedRun, TakesTheCheckpointBeforeADamagedOne) {
 }
 
 TEST_F(InterruptedRun, AddsTheWallTimeOfItsSessions) {
-  const double before_s =
-      Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {})->head.wall_s;
+  const auto run = nlohmann::json::parse(test::read_file(folder_ / "unfinished/run.json"));
+  const double before_s = run["wall_s"];
   EXPECT_GT(before_s, 0);
-  EXPECT_GT(resume(folder_.path(), stopping_at("event", 101)).result.stepping_wall_s, before_s);
+  EXPECT_GT(resume(folder_.path(), stopping_at("event", 101)).last.result.stepping_wall_s, before_s);
 }
 
 TEST_F(InterruptedRun, BeginsAnewWithoutAnyCheckpoint) {
@@ -278,10 +278,12 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
 TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   auto kept = Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {});
   ASSERT_TRUE(kept);
+  double spent_s = 0;
+  kept->body(spent_s);
   const InitialState whole = read_initial_state(kept->body, make_problem(config_));
   const auto keep = [&](auto... parts) {
     Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](results::OutputArchive& archive) {
-      archive(parts...);
+      archive(spent_s, parts...);
     });
   };
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();

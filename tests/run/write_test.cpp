@@ -225,9 +225,9 @@ std::filesystem::path run_streamed(const input::Case& config, const std::filesys
   };
   hooks.request = [&] { return stop ? Request::stop : Request::none; };
   const auto run = run_into(folder, make_problem(config), {}, hooks);
-  EXPECT_TRUE(run.result.event.history.time_s.empty());
-  EXPECT_TRUE(run.result.event.snapshots.empty());
-  return status_of(run.result).name == "complete" ? dir : folder.unfinished();
+  EXPECT_TRUE(run.last.result.event.history.time_s.empty());
+  EXPECT_TRUE(run.last.result.event.snapshots.empty());
+  return status_of(run.last.result).name == "complete" ? dir : folder.unfinished();
 }
 
 void run_in_memory(const input::Case& config, const std::filesystem::path& dir,
