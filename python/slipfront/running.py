@@ -238,6 +238,7 @@ def run(
 
 def resume(
     output: str | os.PathLike[str],
+    case: CaseLike | None = None,
     *,
     threads: int | None = None,
     checkpoint_every_s: float = CHECKPOINT_EVERY_S,
@@ -247,13 +248,17 @@ def resume(
     """Goes on with a run or a sequence that was left unfinished in a folder, as if it had never stopped: bit
     for bit.
 
+    case: that of the run, to be compared with it; or a sequence that is complete goes on where its last event
+    has left it, by the same case with more sequence.max_events, a later sequence.end_s, or longer
+    sequence.times_s and shears_m. Its results stay in the folder until it is complete again.
     observers: those of `run`, or others.
 
     A run that is complete is opened. Raises as `run` does."""
     folder, n_threads = kept_path(output, "output"), threads_of(threads)
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
     called = observers_of(observers)
-    compute(lambda show: _core.resume(folder, n_threads, every_s, show, called), progress)
+    given = None if case is None else make_case(case)
+    compute(lambda show: _core.resume(folder, given, n_threads, every_s, show, called), progress)
     return opened(folder)
 
 

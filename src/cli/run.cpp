@@ -219,8 +219,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
         "--help");
   options.take_folder_of(arguments.file);
   results::ResultFolder folder(options.folder(), run::run_work);
-  if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
-    if (given) require_same_case(given->problem.source, problem::read_problem(folder.dir()).source);
+  if (options.restart && run::is_done(folder, given ? &given->problem : nullptr)) {
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }

@@ -46,6 +46,7 @@ struct Source {
   std::string case_text;  ///< each key with its value, the tables by the names that a run's folder has
   std::string prestress_table, friction_table;
   std::string state_key;  ///< the same for two cases if and only if they share their state before the event
+  std::string endless_text;  ///< case_text but for what ends a sequence
 
   /// What tells cases apart.
   template <class Archive>

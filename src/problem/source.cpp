@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "problem/source.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "files/files.hpp"
@@ -12,6 +13,16 @@
 namespace slipfront::problem {
 
 namespace {
+
+/// What ends a sequence left out.
+input::Case endless(input::Case config) {
+  const input::Sequence endless;
+  config.sequence.max_events = endless.max_events;
+  config.sequence.end_s = endless.end_s;
+  config.sequence.to_global_sliding = endless.to_global_sliding;
+  config.sequence.path = endless.path;
+  return config;
+}
 
 std::string resolved_text(input::Case config) {
   if (!config.prestress.file.empty()) config.prestress.file = prestress_file;
@@ -66,8 +77,12 @@ void require_same(const std::string& wanted, const std::string& kept, const std:
 }  // namespace
 
 Source source_of(const input::Case& config) {
-  return {config.title, resolved_text(config), config.prestress.table.text,
-          config.friction_along_x.table.text, state_key(config)};
+  return {config.title,
+          resolved_text(config),
+          config.prestress.table.text,
+          config.friction_along_x.table.text,
+          state_key(config),
+          resolved_text(endless(config))};
 }
 
 void write_case(const std::filesystem::path& dir, const Source& source) {
@@ -88,6 +103,18 @@ void require_same_case(const Source& wanted, const Source& begun) {
   require_same_keys(wanted, begun, "the case");
   require_same(wanted.prestress_table, begun.prestress_table, "the table of its tractions");
   require_same(wanted.friction_table, begun.friction_table, "the table of its friction");
+}
+
+bool is_continuation(const Problem& problem, const Problem& done) {
+  const auto &now = problem.source, &then = done.source;
+  const auto begins_as = [](const std::vector<double>& values, const std::vector<double>& begin) {
+    return values.size() >= begin.size() && std::equal(begin.begin(), begin.end(), values.begin());
+  };
+  const auto &path = problem.sequence.path, &done_path = done.sequence.path;
+  return problem.is_sequence() && done.is_sequence() && now.endless_text == then.endless_text &&
+         now.prestress_table == then.prestress_table && now.friction_table == then.friction_table &&
+         path.times_s.empty() == done_path.times_s.empty() && begins_as(path.times_s, done_path.times_s) &&
+         begins_as(path.shears_m, done_path.shears_m);
 }
 
 void pack_case(const Problem& problem, MessageBuffer& to) {

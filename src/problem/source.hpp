@@ -28,6 +28,10 @@ void require_same_keys(const Source& wanted, const Source& begun, const std::str
 /// @throws UserError where they differ in their keys, or in the contents of their tables
 void require_same_case(const Source& wanted, const Source& begun);
 
+/// Whether a problem is a sequence that goes on where another one has ended: the two differ at most in what
+/// ends them, and its loading begins as that of the other.
+bool is_continuation(const Problem& problem, const Problem& done);
+
 /// All of a problem's case but the prescribed tractions, which rank 0 alone needs.
 void pack_case(const Problem& problem, MessageBuffer& to);
 Problem unpack_case(MessageBuffer& from);

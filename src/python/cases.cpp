@@ -179,12 +179,15 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
   run_problem(given, problem, dir, false, 1, infinity, std::move(progress));
 }
 
-void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress,
-            const Functions& observers) {
+void resume(const fs::path& dir, const input::CaseFile* given, std::optional<int> threads,
+            double checkpoint_every_s, nb::object progress, const Functions& observers) {
   Session session(dir, threads, checkpoint_every_s, std::move(progress), observers);
-  if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
+  std::optional<Problem> expected;
+  if (given != nullptr) expected = problem::make_problem(given->config());
+  const auto* problem = expected ? &*expected : nullptr;
+  if (run::is_done(session.folder, problem)) return;
   session.complete([&](const run::SessionHooks& hooks) {
-    return run::resume(session.folder, nullptr, session.options, hooks);
+    return run::resume(session.folder, problem, session.options, hooks);
   });
 }
 
@@ -370,9 +373,10 @@ void bind_cases(nb::module_& module) {
       "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a "
       "law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) "
       "the list of states after a time.");
-  module.def("resume", &resume, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
-             "observers"_a,
-             "Goes on with the unfinished run or sequence of a folder; does nothing where it is complete.");
+  module.def("resume", &resume, "dir"_a, "case"_a.none(), "threads"_a.none(), "checkpoint_every_s"_a,
+             "progress"_a.none(), "observers"_a,
+             "Goes on with the unfinished run or sequence of a folder, or with a sequence that is complete "
+             "and that the case continues; does nothing where it is complete.");
 }
 
 }  // namespace slipfront::python

@@ -36,7 +36,7 @@ constexpr const char* kind_name = "kind";
 /// Names that a run's results have.
 constexpr std::array names_of_run = {"case.resolved.toml", "run.json",   "interface.h5", "fronts.csv",
                                      "fracture.csv",       "static.csv", "energy.csv",   "fields.vtkhdf",
-                                     "sequence.json",      "events.csv", "loading.csv"};
+                                     "sequence.json",      "events.csv", "loading.csv",  "sequence.state"};
 /// Folders of a sequence: one for each event, see event_folder, and one for the slow slip before it, which
 /// has but a history.
 constexpr const char* events_name = "events";

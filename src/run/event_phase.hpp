@@ -31,12 +31,6 @@ struct EventRoot {
   std::function<void(const std::string& note)> note;
 };
 
-/// An event that has come to its end, with the state in which it began, without displacements.
-struct FinishedEvent {
-  Result result;
-  InitialState initial;
-};
-
 /// The phase of a run in which waves run: an event on all ranks that share it, each with its subdomain. Rank
 /// 0 alone has the state before it, its files and its results. Beginning and running are collective.
 class EventPhase {

@@ -64,6 +64,12 @@ struct Result {
   }
 };
 
+/// An event that has come to its end, with the state in which it began, without displacements.
+struct FinishedEvent {
+  Result result;
+  InitialState initial;
+};
+
 /// With which a case's event begins.
 motion::Loads loads_of_event(const Problem& problem, const InitialState& initial);
 
@@ -123,6 +129,8 @@ Status status_of(const Result& result);
 results::Numbers numbers_of(const Status& status);
 
 inline constexpr const char* run_file = "run.json";
+/// Where a sequence has ended that is complete: from there it goes on when it is extended.
+inline constexpr const char* end_file = "sequence.state";
 /// What run.json is of a run, of a sequence.
 inline constexpr const char* sequence_file = "sequence.json";
 /// What the files of its rows hold. @param step_s  of its event

@@ -129,6 +129,7 @@ Sequence::Sequence(const Problem& problem, const motion::Monitor& monitor, const
     predictor_.emplace(problem);
   loading_.push_back(row(LoadingPhase::tilted, 0, 0, at_rest_.tractions));
   add_state(at_rest_, loading_.back());
+  n_rows_at_rest_ = loading_.size();
 }
 
 void Sequence::add_state(const statics::Equilibrium& state, LoadingRow& row) const {
@@ -449,6 +450,7 @@ void Sequence::record_event(const Result& result) {
       rests.fastest_slip_rate_m_per_s =
           std::max(rests.fastest_slip_rate_m_per_s, std::abs(at_end.slip_rate_m_per_s[k]));
   loading_.push_back(rests);
+  n_rows_at_rest_ = loading_.size();
   add_event(result, begins, rests, at_rest_.tractions);
   u_begins_x_m_.clear();
 }
@@ -559,9 +561,12 @@ void Sequence::resume_event(const InitialState& initial) {
 }
 
 void Sequence::serialize(StateArchive& archive) {
+  auto rows = loading_;
+  if (!archive.is_loading() && !is_in_event()) rows.resize(n_rows_at_rest_);
   archive(rest_.time_s, rest_.moved_m, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi,
-          rest_.rests_since_s, u_begins_x_m_, loading_, events_);
+          rest_.rests_since_s, u_begins_x_m_, n_rows_at_rest_, rows, events_);
   if (!archive.is_loading()) return;
+  loading_ = std::move(rows);
   const std::size_t n = initial_.tributary_m.size();
   const std::size_t n_at_rest = slow_ || !events_.empty() ? n : 0;
   const auto is_of = [](const std::vector<double>& values, std::size_t size) {
@@ -574,8 +579,9 @@ void Sequence::serialize(StateArchive& archive) {
                                            [](auto contact) { return contact <= statics::Contact::open; }) &&
                        is_of(rest_.u_x_m, n_at_rest) && is_of(rest_.psi, slow_ ? n : 0) &&
                        is_of(rest_.rests_since_s, problem_.heals() ? n : 0) &&
-                       is_of(u_begins_x_m_, is_in_event() ? n : 0) && std::isfinite(rest_.shear_m) &&
-                       std::isfinite(rest_.time_s) && std::isfinite(rest_.moved_m) &&
+                       is_of(u_begins_x_m_, is_in_event() ? n : 0) && n_rows_at_rest_ <= loading_.size() &&
+                       std::isfinite(rest_.shear_m) && std::isfinite(rest_.time_s) &&
+                       std::isfinite(rest_.moved_m) &&
                        (slow_ ? loading_.size() >= n_rows : loading_.size() == n_rows) &&
                        std::ranges::all_of(
                            loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),

@@ -50,7 +50,8 @@ class Sequence {
   bool is_in_event() const { return !u_begins_x_m_.empty(); }
   /// After serialize in an event: the state in which it has begun, whose displacements are not needed.
   void resume_event(const InitialState& initial);
-  /// Between events, and in one.
+  /// Where an event has begun, or where the last one has ended: what followed it without an event is left
+  /// out.
   void serialize(StateArchive& archive);
 
  private:
@@ -115,6 +116,7 @@ class Sequence {
   std::vector<double>
       u_begins_x_m_;  ///< [interface nodes] relative to a base where the event under way has begun
   std::vector<record::LoadingRow> loading_;
+  std::size_t n_rows_at_rest_ = 0;  ///< of loading_, until the last event has ended
   std::vector<record::SequenceEvent> events_;
 };
 

@@ -23,6 +23,7 @@
 #include "problem/source.hpp"
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
+#include "run/event_phase.hpp"
 #include "run/sequence.hpp"
 #include "run/shared_states.hpp"
 
@@ -50,9 +51,16 @@ class Session {
 
   /// From a checkpoint, or from the beginning.
   Finished run(std::unique_ptr<Checkpoints::Checkpoint> kept);
+  /// From where the sequence has ended that is complete in the folder.
+  Finished extend();
 
  private:
   void begin(Checkpoints::Checkpoint* kept);
+  /// From phase to phase, to the end.
+  Finished go_on(std::unique_ptr<Checkpoints::Checkpoint> kept);
+  void read_sequence(results::InputArchive& kept, bool in_event);
+  /// Work with what to keep of it where it fails.
+  Finished keeping_failures(const std::function<Finished()>& work);
   /// The next event, under way. @return false where none begins
   bool begin_event(Checkpoints::Checkpoint* kept);
   /// An event on all ranks. @param in_event  whether it goes on from a checkpoint
@@ -87,7 +95,11 @@ class Session {
   /// Of the event that comes next or is under way, from 1.
   std::size_t number() const { return sequence_->events().size() + 1; }
   fs::path event_dir() const { return sequence_ ? results::event_folder(dir_, number()) : dir_; }
-  fs::path slow_dir(std::size_t k) const { return results::slow_folder(dir_, k); }
+  /// Where a finished event is, or the slow slip before it: with the sequence that this one extends perhaps.
+  fs::path done(fs::path (*folder_of)(const fs::path&, std::size_t), std::size_t k) const {
+    const auto own = folder_of(dir_, k);
+    return files::is_folder(own) || !extends_ ? own : folder_of(folder_.dir(), k);
+  }
 
   results::ResultFolder& folder_;
   fs::path dir_;
@@ -104,6 +116,7 @@ class Session {
   std::string keeps_;  ///< note of a checkpoint that was asked for
 
   std::optional<Sequence> sequence_;
+  bool extends_ = false;                ///< a sequence that is complete in the folder
   std::vector<std::string> sums_;       ///< of the lists of checksums of the events that are done
   std::vector<std::string> slow_sums_;  ///< of the histories of slow slip before them
   motion::Stepper* ramp_stepper_ = nullptr;
@@ -113,35 +126,59 @@ class Session {
 };
 
 Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
-  try {
+  return keeping_failures([&] {
     begin(kept.get());
-    Finished finished;
-    while (event_ || begin_event(kept.get())) {
-      kept.reset();
-      finished.last = event_->run();
-      processes_.set_awaited(false);
-      event_.reset();
-      if (!take(finished.last)) break;
-    }
-    if (!sequence_) {
-      if (status_of(finished.last.result).name == "complete") folder_.publish();
-      return finished;
-    }
-    finished.events = sequence_->events();
-    finished.loading = sequence_->loading();
-    finished.end = sequence_->end();
-    if (finished.end.empty())
-      finished.end =
-          fmt::format("no event begins before the loading ends, at {:g} s", finished.loading.back().time_s);
-    problem::write_case(dir_, problem_.source);
-    try {
-      require_parts_unchanged();
-    } catch (const UserError& error) {
-      throw WriteError("{}", error.what());  // while this program has the folder
-    }
-    write_status({"complete", "", head_.sessions}, finished.end);
-    folder_.publish();
+    return go_on(std::move(kept));
+  });
+}
+
+Finished Session::extend() {
+  return keeping_failures([&] {
+    begin(nullptr);
+    results::InputArchive archive(folder_.dir() / end_file);
+    read_sequence(archive, false);
+    keep();
+    return go_on({});
+  });
+}
+
+Finished Session::go_on(std::unique_ptr<Checkpoints::Checkpoint> kept) {
+  Finished finished;
+  while (event_ || begin_event(kept.get())) {
+    kept.reset();
+    finished.last = event_->run();
+    processes_.set_awaited(false);
+    event_.reset();
+    if (!take(finished.last)) break;
+  }
+  if (!sequence_) {
+    if (status_of(finished.last.result).name == "complete") folder_.publish();
     return finished;
+  }
+  finished.events = sequence_->events();
+  finished.loading = sequence_->loading();
+  finished.end = sequence_->end();
+  if (finished.end.empty())
+    finished.end =
+        fmt::format("no event begins before the loading ends, at {:g} s", finished.loading.back().time_s);
+  problem::write_case(dir_, problem_.source);
+  try {
+    require_parts_unchanged();
+  } catch (const UserError& error) {
+    throw WriteError("{}", error.what());  // while this program has the folder
+  }
+  write_status({"complete", "", head_.sessions}, finished.end);
+  results::OutputArchive archive(dir_ / end_file);
+  archive(sums_, slow_sums_);
+  sequence_->serialize(archive);
+  archive.close();
+  folder_.publish(extends_);
+  return finished;
+}
+
+Finished Session::keeping_failures(const std::function<Finished()>& work) {
+  try {
+    return work();
   } catch (const Interrupted& error) {
     fail("interrupted", error.what());
     if (!began_ && !sequence_) throw;
@@ -164,24 +201,28 @@ void Session::begin(Checkpoints::Checkpoint* kept) {
     sequence_.emplace(
         problem_, [this](std::int64_t, std::int64_t) { return look_at_statics(); }, processes_);
   if (kept == nullptr) return;
-  if (sequence_) {
-    read_from(&kept->body, [&] {
-      kept->body(sums_, slow_sums_);
-      sequence_->serialize(kept->body);
-      const std::size_t n_slow = problem_.is_slow() ? sums_.size() + (kept->head.in_event ? 1 : 0) : 0;
-      require_possible(sums_.size() == sequence_->events().size() && slow_sums_.size() == n_slow &&
-                           sequence_->is_in_event() == kept->head.in_event,
-                       "events");
-      if (!kept->head.in_event) kept->body.close();
-    });
-    require_parts_unchanged();
-    for (std::size_t k = 0; k < sums_.size(); ++k) files::require_intact(results::event_folder(dir_, k + 1));
-  }
+  if (sequence_) read_sequence(kept->body, kept->head.in_event);
   if (!kept->head.in_event) return;
   emplace_event(true);
   event_->restore(&kept->body);
   if (sequence_) sequence_->resume_event(event_->initial());
   kept_time_s_ = event_->time_s();
+}
+
+void Session::read_sequence(results::InputArchive& kept, bool in_event) {
+  read_from(&kept, [&] {
+    kept(sums_, slow_sums_);
+    sequence_->serialize(kept);
+    const std::size_t n_slow = problem_.is_slow() ? sums_.size() + (in_event ? 1 : 0) : 0;
+    require_possible(sums_.size() == sequence_->events().size() && slow_sums_.size() >= n_slow &&
+                         sequence_->is_in_event() == in_event,
+                     "events");
+    slow_sums_.resize(n_slow);
+    if (!in_event) kept.close();
+  });
+  extends_ = !sums_.empty() && !files::is_folder(results::event_folder(dir_, 1));
+  require_parts_unchanged();
+  for (std::size_t k = 0; k < sums_.size(); ++k) files::require_intact(done(results::event_folder, k + 1));
 }
 
 bool Session::begin_event(Checkpoints::Checkpoint* kept) {
@@ -276,8 +317,9 @@ const InitialState* Session::next_state() {
   std::size_t n_rows = 0, told_at = 4096;
   const auto take_row = [&](const record::History& row) {
     if (!slow) {
-      files::make_folders(slow_dir(number()));
-      slow.emplace(slow_dir(number()), results::RunFiles{history_table(problem_, row.x_m), {}});
+      const auto dir = results::slow_folder(dir_, number());
+      files::make_folders(dir);
+      slow.emplace(dir, results::RunFiles{history_table(problem_, row.x_m), {}});
       began_ = true;
     }
     slow->sample(row);
@@ -292,7 +334,8 @@ const InitialState* Session::next_state() {
     const auto* initial = sequence_->next(take_row);
     if (slow) {
       slow->finish();
-      slow_sums_.push_back(files::sha256_of_file(slow_dir(number()) / results::history_file));
+      slow_sums_.push_back(
+          files::sha256_of_file(results::slow_folder(dir_, number()) / results::history_file));
     }
     return initial;
   } catch (const UserError& error) {
@@ -329,9 +372,9 @@ void Session::require_parts_unchanged() const {
                       file.parent_path().string());
   };
   for (std::size_t k = 0; k < sums_.size(); ++k)
-    require_sum(results::event_folder(dir_, k + 1) / files::checksum_list, sums_[k]);
+    require_sum(done(results::event_folder, k + 1) / files::checksum_list, sums_[k]);
   for (std::size_t k = 0; k < slow_sums_.size(); ++k)
-    require_sum(slow_dir(k + 1) / results::history_file, slow_sums_[k]);
+    require_sum(done(results::slow_folder, k + 1) / results::history_file, slow_sums_[k]);
 }
 
 bool Session::look_at_statics() {
@@ -405,6 +448,16 @@ void require_room(const results::ResultFolder& folder, const Problem& problem) {
   folder.require_room(problem.is_sequence() ? problem.sequence.max_events : 0);
 }
 
+/// The problem of the work that was left unfinished in a folder. @param expected  whose case it must be, or
+/// null
+Problem unfinished_problem(const results::ResultFolder& folder, const Problem* expected) {
+  if (!folder.has_unfinished() || !files::is_there(folder.unfinished() / problem::case_file))
+    throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
+  auto problem = problem::read_problem(folder.unfinished());
+  if (expected != nullptr) require_same_case(expected->source, problem.source);
+  return problem;
+}
+
 /// The work that was left unfinished in a folder, with its last checkpoint that is intact, or null.
 struct UnfinishedWork {
   Problem problem;
@@ -452,8 +505,9 @@ int suitable_threads(const Problem& problem) {
   return static_cast<int>(std::clamp(useful, 1.0, most));
 }
 
-Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
-                  const SessionHooks& hooks) {
+namespace {
+
+void begin_work(results::ResultFolder& folder, const Problem& problem) {
   require_room(folder, problem);
   try {
     folder.begin();
@@ -463,21 +517,42 @@ Finished run_into(results::ResultFolder& folder, const Problem& problem, const S
     folder.abandon();
     throw;
   }
+}
+
+/// A sequence that is complete goes on where its last event has left it.
+Finished extend(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
+                const SessionHooks& hooks) {
+  const auto& dir = folder.dir();
+  if (!files::is_there(dir / end_file))
+    throw UserError("{}: has no {}, from which it would go on; start a new run", dir.string(), end_file);
+  const int sessions = sessions_of(dir / sequence_file);
+  begin_work(folder, problem);
+  return Session(folder, problem, options, hooks, sessions).extend();
+}
+
+}  // namespace
+
+Finished run_into(results::ResultFolder& folder, const Problem& problem, const SessionOptions& options,
+                  const SessionHooks& hooks) {
+  begin_work(folder, problem);
   return Session(folder, problem, options, hooks, 0).run({});
 }
 
 Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
                 const SessionHooks& hooks) {
+  if (expected != nullptr && !folder.has_unfinished() && is_complete(folder.dir()))
+    return extend(folder, *expected, options, hooks);
   auto [problem, kept, sessions] = load_unfinished(folder, expected, hooks.note);
   return Session(folder, problem, options, hooks, sessions).run(std::move(kept));
 }
 
-Problem unfinished_problem(const results::ResultFolder& folder, const Problem* expected) {
-  if (!folder.has_unfinished() || !files::is_there(folder.unfinished() / problem::case_file))
-    throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
-  auto problem = problem::read_problem(folder.unfinished());
-  if (expected != nullptr) require_same_case(expected->source, problem.source);
-  return problem;
+bool is_done(const results::ResultFolder& folder, const Problem* expected) {
+  if (folder.has_unfinished() || !is_complete(folder.dir())) return false;
+  if (expected == nullptr) return true;
+  const auto done = problem::read_problem(folder.dir());
+  if (is_continuation(*expected, done) && expected->source.case_text != done.source.case_text) return false;
+  require_same_case(expected->source, done.source);
+  return true;
 }
 
 void serve_ranks(Processes& processes) {

@@ -11,7 +11,6 @@
 #include "base/numbers.hpp"
 #include "record/sequence.hpp"
 #include "results/folder.hpp"
-#include "run/event_phase.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -71,16 +70,18 @@ Finished run_into(results::ResultFolder& folder, const Problem& problem, const S
 
 /// Goes on with a run that was left unfinished, as if it had never stopped: from its last checkpoint that is
 /// intact, or from its beginning where there is none. Ramps solve their statics again.
-/// @param expected  a problem whose case it must be, or null
+/// Or goes on with a sequence that is complete, where its last event has left it, to a later end; its results
+/// stay until it is complete again.
+/// @param expected  a problem whose case it must be, or which continues the complete one; or null
 /// @throws UserError where there is none, or it is one of another program or case, or finished parts were
 /// changed
 Finished resume(results::ResultFolder& folder, const Problem* expected, const SessionOptions& options,
                 const SessionHooks& hooks);
 
-/// The problem of the work that was left unfinished in a folder.
-/// @param expected  a problem whose case it must be, or null
-/// @throws UserError where there is none, or it is another case
-Problem unfinished_problem(const results::ResultFolder& folder, const Problem* expected);
+/// Whether a folder's results are complete, so that there is nothing to go on with.
+/// @param expected  a problem whose case they must be, or which continues them (see is_continuation); or null
+/// @throws UserError where it is another one
+bool is_done(const results::ResultFolder& folder, const Problem* expected);
 
 /// On the ranks but 0: their parts of the events that rank 0 begins or goes on with, until it releases them.
 void serve_ranks(Processes& processes);

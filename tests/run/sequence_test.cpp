@@ -456,6 +456,44 @@ TEST(Sequences, AreTheSameWhereverTheyWereStopped) {
   }
 }
 
+/// A sequence that is complete goes on to a later end, as if it had been asked for from the start.
+TEST(Sequences, AreExtended) {
+  auto healing = sequence_case(4);
+  healing.sequence.healing_per_e_fold = 0.02;
+  for (const auto& [name, longer] : {std::pair{"plain", sequence_case(4)},
+                                     {"healing", healing},
+                                     {"law with a state", rate_and_state_case(3)},
+                                     {"ended by time", sequence_case(3)}}) {
+    SCOPED_TRACE(name);
+    const test::TemporaryFolder folder;
+    const auto whole = folder / "whole", extended = folder / "extended";
+    const auto events = start_sequence(whole, longer).events;
+    auto shorter = longer;
+    if (std::string(name) == "ended by time")
+      shorter.sequence.end_s = 0.5 * (events[0].begin_s + events[1].begin_s);
+    else
+      shorter.sequence.max_events = longer.sequence.max_events - 1;
+    EXPECT_LT(start_sequence(extended, shorter).events.size(), events.size());
+    const auto go_on = [&](const input::Case& config, const SessionHooks& hooks = undisturbed) {
+      results::ResultFolder held(extended, run_work);
+      const auto problem = make_problem(config);
+      if (!is_done(held, &problem)) resume(held, &problem, test::with_threads(1), hooks);
+    };
+    go_on(shorter);  // there is nothing to do
+    auto other = longer;
+    other.time.quiet_s *= 2;
+    EXPECT_THAT(error_of([&] { go_on(other); }), HasSubstr("is another case"));
+    EXPECT_THROW(go_on(longer, stopping_at(fmt::format("event {}", events.size()), 100)), Interrupted);
+    EXPECT_TRUE(is_complete(extended));  // what it was
+    go_on(longer);
+    auto expected = tables_in(whole), found = tables_in(extended);
+    for (auto* tables : {&expected, &found})  // others name the case, whose end is another one
+      std::erase_if(*tables, [](const auto& file) { return !file.first.ends_with(".csv"); });
+    EXPECT_EQ(found, expected);
+    EXPECT_TRUE(is_complete(extended));
+  }
+}
+
 TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
   auto config = rate_and_state_case(2);
   const double a = config.friction.parameter("a");
