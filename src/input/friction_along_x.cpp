@@ -154,7 +154,7 @@ void require_allowed(const Case& config, const std::vector<double>& x_m,
 
 /// Two of t, V_i and theta_i decide the third, at all nodes the same.
 void require_one_initial_state(const Case& config, const std::vector<FrictionLaw>& laws) {
-  if (!config.friction.has_state()) return;
+  if (!config.friction.has_parameter("theta_i_s")) return;
   const FrictionAlongX& along_x = config.friction_along_x;
   const auto given =
       std::ranges::count_if(laws, [](const auto& law) { return law.parameter("theta_i_s") > 0; });
@@ -255,7 +255,7 @@ interface::ContactModel contact_model(const Case& config, const std::vector<doub
   interface::ContactModel model {
     config.friction, config.regularisation, config.contact
   };
-  if (config.friction.has_state()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
+  if (config.friction.never_sticks()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(config);
   const auto laws = friction_at(config, x_m);
   if (!laws.empty())
     model.law_per_node = interface::NodeLaws(

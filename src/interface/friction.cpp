@@ -14,7 +14,7 @@ template <class Law>
 LawDescription describe_law() {
   LawDescription description{Law::name, Law::help, Law{}, {}, {}};
   for (const auto& p : Law::parameters()) description.parameters.push_back({p.key, p.min, p.max, p.help});
-  if constexpr (!HasState<Law>)
+  if constexpr (!HasStates<Law>)
     description.parameters.push_back(
         {FrictionLaw::cohesion_key, 0, 1e15,
          "strength in contact besides mu p, before and after slip; with loading.method = prestress"});
@@ -39,13 +39,18 @@ std::size_t place_of(std::string_view key, const std::vector<LawDescription::Key
 
 FrictionLaw::FrictionLaw() : FrictionLaw(FirstLaw{}) {}
 
+bool FrictionLaw::has_parameter(std::string_view key) const {
+  return std::ranges::find(description_of(*this).parameters, key, &LawDescription::Key::key) !=
+         description_of(*this).parameters.end();
+}
+
 double& FrictionLaw::parameter(std::string_view key) {
-  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
+  if (key == cohesion_key && !never_sticks()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
 double FrictionLaw::parameter(std::string_view key) const {
-  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
+  if (key == cohesion_key && !never_sticks()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
@@ -86,7 +91,7 @@ double kinetic_coefficient(const FrictionLaw& law) {
 
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>)
+    if constexpr (HasStates<Law>)
       return l.steady_coefficient(speed_m_per_s);
     else
       return l.evaluator()(speed_m_per_s, slip_m);
@@ -95,7 +100,7 @@ double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double
 
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>)
+    if constexpr (HasStates<Law>)
       return l.steady_slope_s_per_m(speed_m_per_s);
     else
       return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m);
@@ -108,7 +113,7 @@ bool strengthens(const FrictionLaw& law) {
 
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s) {
   return visit(law, [&]<class Law>(const Law& l) -> std::optional<StateResponse> {
-    if constexpr (!HasState<Law>)
+    if constexpr (!HasStates<Law>)
       return {};
     else {
       const double V = std::max(speed_m_per_s, l.V_i_m_per_s);
@@ -120,7 +125,7 @@ std::optional<StateResponse> state_response(const FrictionLaw& law, double speed
 std::optional<StateBreakdown> state_breakdown(const FrictionLaw& law, double t_Pa, double p_Pa,
                                               double speed_m_per_s) {
   return visit(law, [&]<class Law>(const Law& l) -> std::optional<StateBreakdown> {
-    if constexpr (!HasState<Law>)
+    if constexpr (!HasStates<Law>)
       return {};
     else {
       const auto evaluator = l.evaluator();
@@ -141,14 +146,14 @@ std::optional<StateBreakdown> state_breakdown(const FrictionLaw& law, double t_P
 
 double traction_before_Pa(const FrictionLaw& law, double p_Pa) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>) return l.traction_before_Pa(p_Pa);
+    if constexpr (HasStates<Law>) return l.traction_before_Pa(p_Pa);
     return nan;
   });
 }
 
 void set_initial_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa) {
   visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>)
+    if constexpr (HasStates<Law>)
       if (l.theta_i_s > 0) law.parameter("V_i_m_per_s") = l.slip_rate_before_m_per_s(t_Pa, p_Pa);
   });
 }

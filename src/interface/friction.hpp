@@ -63,8 +63,9 @@ class FrictionLaw {
   std::string_view name() const { return name_; }
   /// Those that the law's struct declares as the array `states`; arrays Interface::law_states are theirs.
   std::span<const LawState> states() const { return states_; }
-  /// Whether it has any: such a law never sticks.
-  bool has_state() const { return !states_.empty(); }
+  bool has_states() const { return !states_.empty(); }
+  /// Whether nodes slip under any traction, so that none begins or ceases to: laws with states.
+  bool never_sticks() const { return has_states(); }
 
   /// The struct again; its lists are those of this law, which must outlive it.
   /// @pre it is this law's
@@ -84,6 +85,7 @@ class FrictionLaw {
   /// Strength in contact besides mu p; 0 of a law with a state, which has no such parameter.
   double cohesion_Pa() const { return cohesion_Pa_; }
 
+  bool has_parameter(std::string_view key) const;
   /// @pre the law has this parameter, named as in the table [friction]
   double& parameter(std::string_view key);
   double parameter(std::string_view key) const;

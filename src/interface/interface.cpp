@@ -103,7 +103,7 @@ struct RegistryLaw {
     set_tip();
   }
   void set_tip() {
-    if constexpr (HasState<Law>) constants.tip_slip_rate_m_per_s = SimdVector{} + tip_slip_rate_m_per_s;
+    if constexpr (HasStates<Law>) constants.tip_slip_rate_m_per_s = SimdVector{} + tip_slip_rate_m_per_s;
   }
 };
 
@@ -216,7 +216,7 @@ void start_contact(const ContactModel& model, Interface& s) {
     }
   });
   visit(model.law, [&]<class Law>(const Law&) {
-    if constexpr (HasState<Law>)
+    if constexpr (HasStates<Law>)
       for (std::size_t i = 0; i < s.size(); ++i)
         s.law_states[0][i] = model.law_at(i).as<Law>().state_before(s.t_Pa[i], s.p_Pa[i]);
   });
@@ -238,7 +238,7 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   return visit(model.law, [&]<class Law>(const Law& one) {
     const auto update_by_law = [&](const auto& law) {
       return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
-        if constexpr (!HasState<Law>)
+        if constexpr (!HasStates<Law>)
           if (model.algorithm == ContactAlgorithm::predictor_corrector)
             return update<ContactAlgorithm::predictor_corrector>(law, regularisation, dt_s, state);
         SLIPFRONT_ASSERT(model.algorithm == ContactAlgorithm::direct, "a state needs the direct algorithm");

@@ -48,7 +48,7 @@ QuasiDynamicFriction::QuasiDynamicFriction(const ContactModel& model, std::size_
                                            double radiation_damping_Pa_s_per_m)
     : radiation_damping_(radiation_damping_Pa_s_per_m) {
   laws_ = visit(model.law, [&]<class Law>(const Law&) -> std::shared_ptr<const Evaluators> {
-    if constexpr (HasState<Law>) {
+    if constexpr (HasStates<Law>) {
       auto of_law = std::make_shared<EvaluatorsOf<Law>>();
       for (std::size_t k = 0; k < n_nodes; ++k) {
         const auto law = model.law_at(k).as<Law>();

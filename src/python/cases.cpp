@@ -173,10 +173,10 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
   if (input::is_sequence(config))
     throw UserError("{} is {}; a law in Python is of one event: set it to 1", Key("sequence.max_events"),
                     config.sequence.max_events);
-  if (evolve && !config.friction.has_state())
+  if (evolve && !config.friction.has_states())
     throw UserError("evolve: {} = {} has no state variable; choose rate_and_state_*", law,
                     config.friction.name());
-  if (!evolve && config.friction.has_state())
+  if (!evolve && config.friction.has_states())
     throw UserError("{} = {} has a state, which mu alone does not change; give evolve", law,
                     config.friction.name());
   if (evolve)

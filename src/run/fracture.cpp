@@ -244,7 +244,7 @@ double exponent_by_pressure(const fracture::Bodies& bodies, double residual_coef
 /// Median strength excess of the nodes that fronts run over; not a number under a law that never sticks.
 double median_strength_excess(const Laws& laws, const fracture::CrackLoads& loads,
                               const std::vector<fracture::PredictedFront>& fronts) {
-  if (laws[0].has_state()) return nan;
+  if (laws[0].never_sticks()) return nan;
   std::vector<double> S;
   for (const auto& front : fronts)
     for (const auto& point : front.points) {
@@ -281,7 +281,7 @@ std::vector<std::string> doubts_of_arrest(const input::Case& config, bool by_law
     doubts.emplace_back(
         "the trigger's force drives fronts further than the energy release rate at rest tells");
   if (!of_speeds.empty()) doubts.push_back(of_speeds);
-  if (config.friction.has_state() && by_law)
+  if (config.friction.never_sticks() && by_law)
     doubts.emplace_back("the residual friction depends on the slip rate");
   return doubts;
 }
@@ -316,7 +316,7 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
   }
   if (config.plate.sides == mesh::Sides::periodic)
     p.notes.emplace_back("periodic sides count as ends of the contact");
-  if (config.friction.has_state() && by_law)
+  if (config.friction.never_sticks() && by_law)
     p.notes.push_back(fmt::format(
         "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
         "the event on",
@@ -332,7 +332,7 @@ void add_notes(const input::Case& given, const input::Case& config, const fractu
 }  // namespace
 
 bool has_fracture_energy(const input::Case& config) {
-  return config.friction.has_state() || interface::weakening_slip_m(config.friction);
+  return config.friction.has_states() || interface::weakening_slip_m(config.friction);
 }
 
 FrontPredictor::FrontPredictor(const input::Case& given) : given_(given), config_(in_fewer_elements(given)) {

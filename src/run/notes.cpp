@@ -212,7 +212,7 @@ void add_pusher(const input::Case& config, Notes& notes) {
 /// A tip that may be that of a wave.
 void add_tip_rate(const input::Case& config, Notes& notes) {
   constexpr double few = 0.1;
-  if (!config.friction.has_state() || !config.tip_slip_rate_m_per_s) return;
+  if (!config.friction.never_sticks() || !config.tip_slip_rate_m_per_s) return;
   auto by_law = config;
   by_law.tip_slip_rate_m_per_s.reset();
   const double usual_m_per_s = input::tip_slip_rate_m_per_s(by_law);

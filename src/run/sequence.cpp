@@ -122,7 +122,7 @@ Sequence::Sequence(const input::Case& config, const motion::Monitor& monitor, co
   describe_solver(config, statics_, initial_);
   at_rest_ = statics_.tilted();
   if (input::heals(config)) rest_.rests_since_s.assign(initial_.tributary_m.size(), 0);
-  if (config.friction.has_state())
+  if (config.friction.never_sticks())
     begin_slow_slip();
   else if (has_fracture_energy(config))
     predictor_.emplace(config);

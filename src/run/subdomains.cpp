@@ -112,7 +112,7 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const input:
     plan.threads = execution.threads;
     plan.whole_x_m = interface_x_m(initial.mesh);
     plan.probes = probes_of(config, initial.mesh, initial.base);
-    if (config.friction.has_state()) plan.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
+    if (config.friction.never_sticks()) plan.tip_slip_rate_m_per_s = input::tip_slip_rate_m_per_s(config);
     to.append(packed(plan, initial.mesh.grid, initial));
   });
   const auto plan = unpacked<Plan>(message);

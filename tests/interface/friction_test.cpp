@@ -38,7 +38,7 @@ TEST(Registry, EachLawIsUsableByDefault) {
   for_each_law([]<class Law>(const Law& law) {
     SCOPED_TRACE(law.name);
     EXPECT_EQ(law.inconsistency().text, "");
-    if constexpr (!HasState<Law>) {
+    if constexpr (!HasStates<Law>) {
       // Strength before slip is the static one; by default speed and slip never make it stronger, or weaker
       // than the kinetic one, which they reach.
       const auto mu = law.evaluator();
@@ -67,7 +67,7 @@ TEST(Registry, SlopesAreTheDerivativesWithTheSlipRate) {
   const double d = 1e-4;
   for_each_law([&]<class Law>(const Law& law) {
     SCOPED_TRACE(law.name);
-    if constexpr (!HasState<Law>) {
+    if constexpr (!HasStates<Law>) {
       const auto mu = law.evaluator();
       for (const double v : {0.01, 0.3, 2.0})
         EXPECT_NEAR(mu.slope_s_per_m(v, 1e-6), (mu(v + d, 1e-6) - mu(v - d, 1e-6)) / (2 * d), 3e-8);
