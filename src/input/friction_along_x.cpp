@@ -232,7 +232,7 @@ Case with_friction_at(Case config, const std::vector<double>& x_m, const std::ve
 double radiation_slip_rate_m_per_s(const Case& config) {
   double admittance = solid::shear_admittance_m_per_Pa_s(config.material);
   if (has_base_body(config)) admittance += solid::shear_admittance_m_per_Pa_s(base_material(config));
-  return admittance * config.friction.parameter("a") * nominal_pressure_Pa(config);
+  return admittance * direct_effect(config.friction) * nominal_pressure_Pa(config);
 }
 
 double tip_slip_rate_m_per_s(const Case& config) {

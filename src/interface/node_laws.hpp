@@ -9,6 +9,7 @@
 
 #include "base/lanes.hpp"
 #include "interface/friction.hpp"
+#include "interface/friction/state_law.hpp"
 
 namespace slipfront::interface {
 
@@ -28,10 +29,6 @@ struct StateLawConstants {
   Evolving law;
   V tip_slip_rate_m_per_s;  ///< see ContactModel
 };
-template <class Law>
-inline constexpr std::size_t n_states_of = 0;
-template <HasStates Law>
-inline constexpr std::size_t n_states_of<Law> = Law::states.size();
 template <class Law, class V, class Evaluator = typename Law::template Evaluator<V>>
 using ConstantsOf =
     std::conditional_t<HasStates<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
