@@ -20,11 +20,16 @@ std::array<V, n> states_at(const LawStates& states, std::size_t node) {
   return of_node;
 }
 
+template <class Evaluator, std::size_t n>
+concept HasRates = requires(const Evaluator& law, const std::array<double, n>& states) {
+  law.rates_per_s(states, 1.0);
+};
+
 /// d states/dt at a slip rate.
 template <class Evaluator, std::size_t n>
 std::array<double, n> rates_per_s(const Evaluator& law, const std::array<double, n>& states, double V,
                                   double short_s) {
-  if constexpr (requires { law.rates_per_s(states, V); }) {
+  if constexpr (HasRates<Evaluator, n>) {
     return law.rates_per_s(states, V);
   } else {
     auto rates = law.evolved(states, V, short_s);
@@ -59,6 +64,7 @@ struct QuasiDynamicFriction::Nodes {
   Nodes(const Nodes&) = delete;
   Nodes& operator=(const Nodes&) = delete;
   virtual ~Nodes() = default;
+  virtual bool takes_differences() const = 0;
   virtual void balance(double radiation_damping, std::span<const double> t_Pa, std::span<const double> p_Pa,
                        const LawStates& states, double short_s, std::span<double> slip_rate_m_per_s,
                        LawStates& states_per_s) const = 0;
@@ -66,7 +72,10 @@ struct QuasiDynamicFriction::Nodes {
 
 template <class Law>
 struct QuasiDynamicFriction::NodesOf final : Nodes {
-  std::vector<typename Law::template Evaluator<double>> laws;
+  using Evaluator = typename Law::template Evaluator<double>;
+  std::vector<Evaluator> laws;
+
+  bool takes_differences() const override { return !HasRates<Evaluator, n_states_of<Law>>; }
 
   void balance(double radiation_damping, std::span<const double> t_Pa, std::span<const double> p_Pa,
                const LawStates& states, double short_s, std::span<double> slip_rate,
@@ -85,6 +94,8 @@ struct QuasiDynamicFriction::NodesOf final : Nodes {
 
 struct QuasiDynamicFriction::NodesOfFunction final : Nodes {
   std::shared_ptr<const StateArrayLaw> law;
+
+  bool takes_differences() const override { return true; }
 
   void balance(double radiation_damping, std::span<const double> t_Pa, std::span<const double> p_Pa,
                const LawStates& states, double short_s, std::span<double> slip_rate,
@@ -157,6 +168,10 @@ QuasiDynamicFriction::QuasiDynamicFriction(const ContactModel& model, std::size_
   for (std::size_t k = 0; k < effects.size(); ++k)
     for (std::size_t i = 0; i < n_nodes; ++i) state_scales_[k][i] = a_[i] / effects[k][i];
   nodes_ = nodes;
+}
+
+bool QuasiDynamicFriction::takes_differences() const {
+  return nodes_->takes_differences();
 }
 
 void QuasiDynamicFriction::balance(std::span<const double> t_Pa, std::span<const double> p_Pa,

@@ -20,11 +20,13 @@ class QuasiDynamicFriction {
 
   /// Slip rates V at which p mu(V, states) + (radiation damping) V = t, with its sign, and d states/dt. A
   /// node with p <= 0 does not slip.
-  /// @param short_s  in which states change evenly: rates of laws that give none are those of this time
+  /// @param short_s  in which states change evenly: rates that the law does not give are those of this time
   void balance(std::span<const double> t_Pa, std::span<const double> p_Pa, const LawStates& states,
                double short_s, std::span<double> slip_rate_m_per_s, LawStates& states_per_s) const;
   /// With which loading begins: what the law gives, else those of steady sliding at V_i.
   const LawStates& initial_states() const { return initial_states_; }
+  /// Whether d states/dt are those of short_s.
+  bool takes_differences() const;
   double radiation_damping_Pa_s_per_m() const { return radiation_damping_; }
   /// d mu/d ln V at once, and slip over which states change.
   const std::vector<double>& a() const { return a_; }

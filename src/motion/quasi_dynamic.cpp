@@ -78,6 +78,18 @@ void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics:
   settle_contact();
   next_dt_s_ = first_dt_s();  // now that slip rates are known
   slide(now_, rates_);
+  // Rates by differences hold over times in which states change little.
+  const auto largest_change = [&] {
+    double largest = 0;
+    for (std::size_t i = 0; i < tributary_m_.size(); ++i)
+      largest = std::max(
+          largest, friction_.change(i, [&](std::size_t k) { return rates_.law_states[k][i] * next_dt_s_; }));
+    return largest;
+  };
+  while (friction_.takes_differences() && largest_change() > 1) {
+    next_dt_s_ *= 0.1;
+    slide(now_, rates_);
+  }
 }
 
 bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
@@ -94,7 +106,10 @@ bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
     const double remaining_s = end_s - now_.time_s;
     const bool is_last = next_dt_s_ >= remaining_s;
     const double taken_s = try_step(std::min(next_dt_s_, remaining_s));
-    if (taken_s == 0) continue;
+    if (taken_s == 0) {
+      slide(now_, rates_);  // over a shorter time
+      continue;
+    }
     if (next_.fastest_m_per_s() > beyond * slip_rate_m_per_s) {
       next_dt_s_ = 0.5 * taken_s;
       continue;
