@@ -41,7 +41,27 @@ class Cycles:
     force: np.ndarray  # over the normal force
 
 
-def case(softness: float, d_c_m: float, sequence: str) -> str:
+@dataclass
+class States:
+    """Effects and slips of the states of an aging law."""
+
+    b: np.ndarray
+    d_c_m: np.ndarray
+
+    def friction(self) -> str:
+        if len(self.b) == 1:
+            return f'law = "rate_and_state_aging"\nb = {self.b[0]}\nd_c_m = {self.d_c_m[0]}'
+        b, d_c_m = self.b.tolist(), self.d_c_m.tolist()
+        return 'law = "rate_and_state_aging_two"\n' + "\n".join(
+            f"b{k} = {b[k - 1]}\nd_c{k}_m = {d_c_m[k - 1]}" for k in (1, 2)
+        )
+
+
+def one(d_c_m: float) -> States:
+    return States(np.array([B]), np.array([d_c_m]))
+
+
+def case(softness: float, states: States, sequence: str) -> str:
     return f"""
 title = "block behind a spring"
 [plate]
@@ -62,13 +82,11 @@ shear_stiffness_Pa = {softness * STIFFNESS}
 shear_speed_over_c_L = {SPEED_OVER_C_L}
 edge_margin_m = {0.1 * WIDTH_M}
 [friction]
-law = "rate_and_state_aging"
+{states.friction()}
 a = {A}
-b = {B}
 f0 = {F0}
 V0_m_per_s = {V0}
 V_i_m_per_s = {V0}
-d_c_m = {d_c_m}
 [event]
 kind = "spontaneous"
 [time]
@@ -99,48 +117,50 @@ def program(text: str, folder: Path) -> Cycles:
     )
 
 
-def equation(softness: float, d_c_m: float, end_s: float) -> Cycles:
-    """Rate and state, aging law: without inertia below INERTIA_FROM, and by u, ln V and psi above."""
+def equation(softness: float, states: States, end_s: float) -> Cycles:
+    """Rate and state, aging law: without inertia below INERTIA_FROM, and by u, ln V and states above, each
+    b ln(V0 theta/d_c)."""
     K = softness * STIFFNESS
+    n = len(states.b)
 
-    def psi_rate(psi: float, v: float) -> float:
-        return B * (V0 / d_c_m * np.exp((F0 - psi) / B) - v / d_c_m)
+    def state_rates(state: np.ndarray, v: float) -> np.ndarray:
+        return states.b / states.d_c_m * (V0 * np.exp(-state / states.b) - v)
 
-    def slow_rate(t: float, u: float, psi: float) -> float:
-        y = K * (SPEED * t - u) / (N * A)
+    def slow_rate(t: float, u: float, *state: float) -> float:
+        y, psi = K * (SPEED * t - u) / (N * A), F0 + sum(state)
         return V0 * (np.exp(y - psi / A) - np.exp(-y - psi / A))
 
     def slow(t: float, y: np.ndarray) -> list[float]:
         v = slow_rate(t, *y)
-        return [v, psi_rate(y[1], v)]
+        return [v, *state_rates(y[1:], v)]
 
     def fast(t: float, y: np.ndarray) -> list[float]:
-        u, ln_v, psi = y
+        u, ln_v, *state = y
         v = np.exp(ln_v)
-        mu = A * np.arcsinh(0.5 * np.exp(ln_v - np.log(V0) + psi / A))
-        return [v, (K * (SPEED * t - u) - N * mu) / (M * v), psi_rate(psi, v)]
+        mu = A * np.arcsinh(0.5 * np.exp(ln_v - np.log(V0) + (F0 + sum(state)) / A))
+        return [v, (K * (SPEED * t - u) - N * mu) / (M * v), *state_rates(np.array(state), v)]
 
     speeds_up: Callable[..., float] = lambda t, y: np.log(max(slow_rate(t, *y), 1e-99) / INERTIA_FROM)  # noqa: E731
     speeds_up.terminal, speeds_up.direction = True, 1  # type: ignore[attr-defined]
     slows_down: Callable[..., float] = lambda t, y: y[1] - np.log(0.5 * INERTIA_FROM)  # noqa: E731
     slows_down.terminal, slows_down.direction = True, -1  # type: ignore[attr-defined]
-    t, u, psi = 0.0, 0.0, F0
+    t, u, state = 0.0, 0.0, np.zeros(n)
     parts = []
     while t < end_s:
         found = solve_ivp(
-            slow, (t, end_s), [u, psi], "Radau", rtol=1e-9, atol=[1e-15, 1e-11], events=speeds_up
+            slow, (t, end_s), [u, *state], "Radau", rtol=1e-9, atol=[1e-15] + n * [1e-11], events=speeds_up
         )
         rates = [slow_rate(*row) for row in zip(found.t, *found.y, strict=True)]
         parts.append(np.array([found.t, found.y[0], rates]))
-        t, (u, psi) = found.t[-1], found.y[:, -1]
+        t, (u, *state) = found.t[-1], found.y[:, -1]
         if t >= end_s:
             break
-        first = [u, np.log(INERTIA_FROM), psi]
+        first = [u, np.log(INERTIA_FROM), *state]
         found = solve_ivp(
-            fast, (t, end_s), first, "Radau", rtol=1e-9, atol=[1e-15, 1e-8, 1e-11], events=slows_down
+            fast, (t, end_s), first, "Radau", rtol=1e-9, atol=[1e-15, 1e-8] + n * [1e-11], events=slows_down
         )
         parts.append(np.array([found.t, found.y[0], np.exp(found.y[1])]))
-        t, u, psi = found.t[-1], found.y[0, -1], found.y[2, -1]
+        t, u, state = found.t[-1], found.y[0, -1], found.y[2:, -1]
     t, u, v = np.concatenate(parts, axis=1)
     return measured(t, K * (SPEED * t - u) / N, v)
 
@@ -159,6 +179,7 @@ def measured(t: np.ndarray, force: np.ndarray, v: np.ndarray) -> Cycles:
 
 
 D_C_M = 0.7e-7
+TWO = States(np.array([B - A, A]), np.array([2 * D_C_M, 0.5 * D_C_M]))
 SOFT = (0.03, 0.01, 0.003)  # spring over block
 END_S = 130.0
 
@@ -181,16 +202,17 @@ def critical_d_c_m(softness: float) -> float:
 def compared(folder: Path) -> list[Compared]:
     found = []
     for softness in SOFT:
-        ours = program(case(softness, D_C_M, ""), folder / f"state_{softness}")
-        found.append(Compared(softness, ours, equation(softness, D_C_M, END_S * SOFT[1] / softness)))
+        ours = program(case(softness, one(D_C_M), ""), folder / f"state_{softness}")
+        found.append(Compared(softness, ours, equation(softness, one(D_C_M), END_S * SOFT[1] / softness)))
     return found
 
 
 def stable(softness: float, folder: Path) -> tuple[Cycles, Cycles, float]:
     """Twice the critical d_c: no events, and the force of steady sliding at the machine's speed."""
     d_c_m = 2 * critical_d_c_m(softness)
-    ours = program(case(softness, d_c_m, f"end_s = {END_S}"), folder / f"stable_{softness}")
-    return ours, equation(softness, d_c_m, END_S), F0 + (A - B) * np.log(SPEED / V0)
+    states = one(d_c_m)
+    ours = program(case(softness, states, f"end_s = {END_S}"), folder / f"stable_{softness}")
+    return ours, equation(softness, states, END_S), F0 + (A - B) * np.log(SPEED / V0)
 
 
 def differences(c: Compared) -> dict[str, tuple[float, float]]:

@@ -45,7 +45,7 @@ std::vector<double> motion(double stiffness, double dt_s, double end_s) {
   const interface::ContactModel model { law() };
   interface::Interface node(1, model.law.states());
   const double k_Pa_per_m = stiffness * pressure_Pa / law().d_c_m;
-  const double steady_Pa = law().steady_coefficient(V_m_per_s) * pressure_Pa;
+  const double steady_Pa = interface::static_coefficient(law()) * pressure_Pa;
   node.mass_per_length_kg_m2[0] = mass_kg_per_m2;
   node.p_Pa[0] = pressure_Pa;
   node.t_Pa[0] = steady_Pa;

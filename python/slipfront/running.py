@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -22,6 +23,7 @@ from slipfront.errors import BlowUpError, CaseError, WriteError
 from slipfront.given import array, flag, in_order, kept_path, number, path, shown, table, text, whole
 from slipfront.opened import Kept, OpenRun, open_run
 from slipfront.opened_sequence import OpenSequence, opened
+from slipfront.read import HISTORY_FIELDS
 
 # A path, the text of a case file, or its tables as dictionaries.
 CaseLike = str | os.PathLike[str] | Mapping[str, Any]
@@ -264,32 +266,48 @@ def resume(
 
 def run_with_law(
     case: CaseLike,
-    mu: Callable[[np.ndarray, np.ndarray], ArrayLike],
+    mu: Callable[..., ArrayLike],
     changes: Mapping[str, Any] | None = None,
     /,
     *,
-    evolve: Callable[..., ArrayLike] | None = None,
+    evolve: Callable[..., ArrayLike | tuple[ArrayLike, ...]] | None = None,
+    initial: Callable[[np.ndarray, np.ndarray], ArrayLike | tuple[ArrayLike, ...]] | None = None,
+    states: Mapping[str, str] | None = None,
     progress: bool | Progress = True,
     **tables: Any,
-) -> OpenRun:
-    """Runs a case with a friction law in Python, to try laws out: slow, and right.
+) -> OpenRun | OpenSequence:
+    """Runs a case, or a sequence, with a friction law in Python, to try laws out: slow, and right.
 
     mu: called with slip rates |v|, m/s, and slip paths, m, both [nodes]; returns the friction coefficient
     [nodes]. Called up to five times for each (sub-)step, since the rate at its end depends on mu.
 
-    evolve: of a law with a state, which never sticks, in a case with a law of rate and state, whose psi it
-    has and begins with. evolve(dt_s, slip_rate, psi) returns psi after a time at these slip rates;
-    mu(slip_rate, psi) rises with the slip rate and is odd in it, so that it is asked for above 0 alone. Each
-    node is solved for its slip rate as under the case's law; mu is called some 15 times.
+    evolve: of a law with states, which never sticks, in a case with a law of rate and state, in whose place it
+    is. evolve(dt_s, slip_rate, *states) returns the states after a time at these slip rates, however short or
+    long: an array, or a tuple of as many as there are states. mu(slip_rate, *states) rises with the slip rate
+    and is odd in it, so that it is asked for above 0 alone. Each node is solved for its slip rate; mu is
+    called some 10 times. States are those of the case's law, and begin as its.
+
+    states, initial: states of its own instead, names as they are to have in results, with their units, and
+    initial(t_Pa, p_Pa), which returns them at nodes before the event; where t_Pa or p_Pa is 0 those of steady
+    sliding at the case's V_i_m_per_s.
 
     The case's own law still gives the coefficient before slip, which statics and fronts take: mu(0, 0) must
-    be equal to it; and that of weakened nodes. Case and changes as for `run`. The run takes one thread. Its
-    files name the case's own law, so that they cannot be kept in a folder or gone on with: they go with the
-    returned object. Raises what `mu` raises, CaseError where it gives no number or one below 0, and as `run`
-    does."""
+    be equal to it; that of weakened nodes; and, with states, thresholds and accuracies: let it have a like a
+    and d_c. Case and changes as for `run`. The run takes one thread. Its files name the case's own law, so
+    that they cannot be kept in a folder or gone on with: they go with the returned object. Raises what `mu`
+    raises, CaseError where it gives no number or one below 0, and as `run` does."""
     prepared = make_case(case, changes, tables)
     if not callable(mu):
         raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
+    if evolve is not None and not callable(evolve):
+        raise CaseError(f"evolve is {shown(evolve)}; it must be a function of a time, slip rates and states")
+    if (initial is None) != (states is None) or (initial is not None and evolve is None):
+        raise CaseError("states of a law's own need evolve, states and initial; give all of them")
+    if initial is not None and not callable(initial):
+        raise CaseError(f"initial is {shown(initial)}; it must be a function of t_Pa and p_Pa")
+    for name in states or ():
+        if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) or name in (*HISTORY_FIELDS, "time_s", "x_m"):
+            raise CaseError(f"states: {shown(name)} cannot be a state's name in results; choose another one")
 
     def at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray) -> np.ndarray:
         values = array(given, name)
@@ -299,12 +317,22 @@ def run_with_law(
             raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
         return np.ascontiguousarray(np.broadcast_to(values, like.shape))
 
-    def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
-        return at_nodes(mu(speed_m_per_s, slip_m), "mu", 0, slip_m)
+    def of_arrays(speed_m_per_s: np.ndarray, *slip_or_states: np.ndarray) -> np.ndarray:
+        return at_nodes(mu(speed_m_per_s, *slip_or_states), "mu", 0, speed_m_per_s)
 
-    def after(dt_s: float, speed_m_per_s: np.ndarray, psi: np.ndarray) -> list[np.ndarray]:
+    def states_of(given: Any, name: str, n_states: int, like: np.ndarray) -> list[np.ndarray]:
+        values = given if isinstance(given, tuple) else (given,)
+        if len(values) != n_states:
+            raise CaseError(f"{name} returns {len(values)} states, not a tuple of {n_states}")
+        return [at_nodes(value, name, -math.inf, like) for value in values]
+
+    def after(dt_s: float, speed_m_per_s: np.ndarray, *now: np.ndarray) -> list[np.ndarray]:
         assert evolve is not None
-        return [at_nodes(evolve(dt_s, speed_m_per_s, psi), "evolve", -math.inf, psi)]
+        return states_of(evolve(dt_s, speed_m_per_s, *now), "evolve", len(now), speed_m_per_s)
+
+    def first(t_Pa: np.ndarray, p_Pa: np.ndarray) -> list[np.ndarray]:
+        assert initial is not None and states is not None
+        return states_of(initial(t_Pa, p_Pa), "initial", len(states), t_Pa)
 
     if evolve is None:
         at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
@@ -313,13 +341,21 @@ def run_with_law(
             raise CaseError(
                 f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal"
             )
-    elif not callable(evolve):
-        raise CaseError(f"evolve is {shown(evolve)}; it must be a function of a time, slip rates and states")
-    of_states = None if evolve is None else after
     folder = temporary_folder()
     try:
-        compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, of_states, show), progress)
-        return open_run(folder, Kept(folder))
+        compute(
+            lambda show: _core.run_by_law(
+                prepared,
+                folder,
+                of_arrays,
+                None if evolve is None else after,
+                None if initial is None else first,
+                list((states or {}).items()),
+                show,
+            ),
+            progress,
+        )
+        return opened(folder, Kept(folder))
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

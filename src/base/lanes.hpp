@@ -166,6 +166,14 @@ inline SimdVector copy_sign(SimdVector magnitude, SimdVector sign) {
   return from_bits((bits_of(magnitude) & ~sign_bit) | (bits_of(sign) & sign_bit));
 }
 
+inline double square_root(double a) {
+  return std::sqrt(a);
+}
+inline SimdVector square_root(SimdVector a) {
+  for (int k = 0; k < lanes; ++k) a[k] = std::sqrt(a[k]);
+  return a;
+}
+
 /// Numbers [from, from + length) of two vectors one behind the other.
 template <int from, class V, int... k>
 inline V part_of(const V& first, const V& second, std::integer_sequence<int, k...>) {

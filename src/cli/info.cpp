@@ -134,14 +134,14 @@ std::string text_of(const stability::Spread& spread) {
 /// What a law that weakens over a slip lets expect.
 void add_lengths(const run::RuptureOutlook& rupture, std::string_view law, Listing& list) {
   const auto& o = rupture.of_nodes;
-  const bool has_state = rupture.tip_slip_rate_m_per_s.has_value();
+  const bool never_sticks = rupture.tip_slip_rate_m_per_s.has_value();
   const auto add_zone = [&] {
     if (o.process_zone_m)
       list.add("process zone at rest", fmt::format("{:.3g} m, {:.3g} elements (Palmer, Rice 1973)",
                                                    *o.process_zone_m, *rupture.process_zone_elements));
   };
   if (!o.nucleation_length_m) {
-    list.add("nucleation length", has_state
+    list.add("nucleation length", never_sticks
                                       ? "none: friction does not weaken with the slip rate before the event"
                                       : "none: friction does not weaken over a slip, the mesh decides");
     add_zone();
@@ -151,10 +151,10 @@ void add_lengths(const run::RuptureOutlook& rupture, std::string_view law, Listi
                            ? fmt::format("; the trigger has {:.3g} m", *rupture.trigger_length_m)
                            : std::string();
   list.add("nucleation length",
-           has_state && law != "rate_and_state_aging"
+           never_sticks && law != "rate_and_state_aging"
                ? std::string("unknown: that of the aging law does not hold for the slip law")
                : fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
-                             has_state ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
+                             never_sticks ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
   if (o.unstable_wavelength_m)
     list.add("unstable wavelengths",
              fmt::format("from {:.3g} m on, under the slip rate before the event (Rice, Ruina 1983)",

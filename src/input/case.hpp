@@ -160,7 +160,7 @@ inline bool is_sequence(const Case& config) {
 
 /// Whether slow slip lies between its events.
 inline bool is_slow(const Case& config) {
-  return is_sequence(config) && config.friction.has_state();
+  return is_sequence(config) && config.friction.never_sticks();
 }
 
 /// How its event begins.

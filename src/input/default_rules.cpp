@@ -91,7 +91,7 @@ DefaultRule quiet_time_rule(const Scale& crossing) {
       "4 height_m / c_S, with the higher body's height";
   rule.value = [share = rule.value](const Case& c) -> Value {
     if (is_sequence(c)) return longest_period_s(c);
-    return c.friction.has_state() || strengthens(c.friction) ? Value(infinity) : share(c);
+    return c.friction.never_sticks() || strengthens(c.friction) ? Value(infinity) : share(c);
   };
   return rule;
 }

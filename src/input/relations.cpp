@@ -37,7 +37,7 @@ void check_friction(const Case& config) {
 
 /// What a law that never sticks cannot be combined with.
 void check_state(const Case& config) {
-  if (!config.friction.has_state()) return;
+  if (!config.friction.never_sticks()) return;
   const Key law("friction.law");
   const auto refuse = [&](const Key& key, const char* value, const char* instead) {
     throw UserError("{} = {} asks whether nodes stick, which they never do under {} = {}; choose {}", key,
@@ -64,7 +64,7 @@ void check_state(const Case& config) {
 void check_initial_state(const Case& config) {
   const auto& law = config.friction;
   const Key theta("friction.theta_i_s"), V("friction.V_i_m_per_s"), t("prestress.t_Pa");
-  if (!law.has_state() || law.parameter(leaf_of(theta.name)) == 0) return;
+  if (!law.has_parameter(leaf_of(theta.name)) || law.parameter(leaf_of(theta.name)) == 0) return;
   if (is_sequence(config)) return;  // V follows
   if (!is_prestressed(config) || !config.prestress.file.empty())
     throw UserError(
@@ -125,7 +125,7 @@ void check_prestress(const Case& config, const Document& document) {
         .about(method.name);
   }
   const Key t("prestress.t_Pa"), p("prestress.p_Pa");
-  const bool t_follows = config.friction.has_state();
+  const bool t_follows = config.friction.has_states();
   const bool uniform = (document.find(t.name) || t_follows) && document.find(p.name);
   if (!uniform && config.prestress.file.empty())
     throw UserError("{} = prestress needs {}, or {}", method,

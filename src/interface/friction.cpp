@@ -14,7 +14,7 @@ template <class Law>
 LawDescription describe_law() {
   LawDescription description{Law::name, Law::help, Law{}, {}, {}};
   for (const auto& p : Law::parameters()) description.parameters.push_back({p.key, p.min, p.max, p.help});
-  if constexpr (!HasState<Law>)
+  if constexpr (!HasStates<Law>)
     description.parameters.push_back(
         {FrictionLaw::cohesion_key, 0, 1e15,
          "strength in contact besides mu p, before and after slip; with loading.method = prestress"});
@@ -39,13 +39,18 @@ std::size_t place_of(std::string_view key, const std::vector<LawDescription::Key
 
 FrictionLaw::FrictionLaw() : FrictionLaw(FirstLaw{}) {}
 
+bool FrictionLaw::has_parameter(std::string_view key) const {
+  return std::ranges::find(description_of(*this).parameters, key, &LawDescription::Key::key) !=
+         description_of(*this).parameters.end();
+}
+
 double& FrictionLaw::parameter(std::string_view key) {
-  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
+  if (key == cohesion_key && !never_sticks()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
 double FrictionLaw::parameter(std::string_view key) const {
-  if (key == cohesion_key && !has_state()) return cohesion_Pa_;
+  if (key == cohesion_key && !never_sticks()) return cohesion_Pa_;
   return values_[place_of(key, description_of(*this).parameters)];
 }
 
@@ -69,7 +74,12 @@ const LawDescription& description_of(const FrictionLaw& law) {
 }
 
 double static_coefficient(const FrictionLaw& law) {
-  return visit(law, [](const auto& l) { return l.static_coefficient(); });
+  return visit(law, []<class Law>(const Law& l) {
+    if constexpr (HasStates<Law>)
+      return steady_coefficient(l, l.V_i_m_per_s);
+    else
+      return l.static_coefficient();
+  });
 }
 
 bool has_static_coefficient(const FrictionLaw& law) {
@@ -81,13 +91,18 @@ double static_strength_Pa(const FrictionLaw& law, double p_Pa) {
 }
 
 double kinetic_coefficient(const FrictionLaw& law) {
-  return visit(law, [](const auto& l) { return l.kinetic_coefficient(); });
+  return visit(law, []<class Law>(const Law& l) {
+    if constexpr (HasStates<Law>)
+      return steady_coefficient(l, std::max(1.0, l.V_i_m_per_s));
+    else
+      return l.kinetic_coefficient();
+  });
 }
 
 double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>)
-      return l.steady_coefficient(speed_m_per_s);
+    if constexpr (HasStates<Law>)
+      return steady_coefficient(l, std::max(speed_m_per_s, l.V_i_m_per_s));
     else
       return l.evaluator()(speed_m_per_s, slip_m);
   });
@@ -95,8 +110,8 @@ double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double
 
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>)
-      return l.steady_slope_s_per_m(speed_m_per_s);
+    if constexpr (HasStates<Law>)
+      return steady_slope_s_per_m(l, std::max(speed_m_per_s, l.V_i_m_per_s));
     else
       return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m);
   });
@@ -108,47 +123,69 @@ bool strengthens(const FrictionLaw& law) {
 
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s) {
   return visit(law, [&]<class Law>(const Law& l) -> std::optional<StateResponse> {
-    if constexpr (!HasState<Law>)
+    if constexpr (!HasStates<Law>)
       return {};
     else {
       const double V = std::max(speed_m_per_s, l.V_i_m_per_s);
-      return StateResponse{l.a, l.a - V * l.steady_slope_s_per_m(V), l.d_c_m, V, l.breakdown_per_m()};
+      const double a = direct_effect(l.evaluator(), V, steady_states(l, V));
+      return StateResponse{a, a - V * steady_slope_s_per_m(l, V), following_slip_m(l, V), V,
+                           breakdown_per_m(l)};
     }
+  });
+}
+
+double direct_effect(const FrictionLaw& law) {
+  return visit(law, []<class Law>(const Law& l) {
+    if constexpr (HasStates<Law>)
+      return direct_effect(l.evaluator(), l.V_i_m_per_s, steady_states(l, l.V_i_m_per_s));
+    return nan;
   });
 }
 
 std::optional<StateBreakdown> state_breakdown(const FrictionLaw& law, double t_Pa, double p_Pa,
                                               double speed_m_per_s) {
   return visit(law, [&]<class Law>(const Law& l) -> std::optional<StateBreakdown> {
-    if constexpr (!HasState<Law>)
+    if constexpr (!HasStates<Law>)
       return {};
     else {
       const auto evaluator = l.evaluator();
-      const double steady = evaluator.steady_state(speed_m_per_s), first = l.state_before(t_Pa, p_Pa);
+      const auto strength = [&](const auto& states) {
+        if constexpr (IsArsinh<decltype(evaluator)>)
+          return sum_of(states);  // from which mu differs by the same at all times
+        else
+          return evaluator.coefficient(speed_m_per_s, states);
+      };
+      auto states = l.initial(t_Pa, p_Pa);
+      const double steady = strength(steady_states(l, speed_m_per_s)), first = strength(states);
       constexpr double part_of_d_c = 0.01, rest = 1e-4;
       constexpr int most_steps = 1'000'000;
-      const double slip_m = part_of_d_c * l.d_c_m;
-      double psi = first, energy_m = 0;
-      for (int k = 0; k < most_steps && psi - steady > rest * (first - steady); ++k) {
-        const double next = evaluator.evolved(psi, speed_m_per_s, slip_m / speed_m_per_s);
-        energy_m += (0.5 * (psi + next) - steady) * slip_m;
-        psi = next;
+      const double slip_m = part_of_d_c * following_slip_m(l, l.V_i_m_per_s);
+      double now = first, energy_m = 0;
+      for (int k = 0; k < most_steps && now - steady > rest * (first - steady); ++k) {
+        states = evaluator.evolved(states, speed_m_per_s, slip_m / speed_m_per_s);
+        const double next = strength(states);
+        energy_m += (0.5 * (now + next) - steady) * slip_m;
+        now = next;
       }
-      return StateBreakdown{energy_m, evaluator.steady_coefficient(speed_m_per_s)};
+      return StateBreakdown{energy_m, steady_coefficient(l, speed_m_per_s)};
     }
   });
 }
 
 double traction_before_Pa(const FrictionLaw& law, double p_Pa) {
   return visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>) return l.traction_before_Pa(p_Pa);
-    return nan;
+    if constexpr (requires { l.traction_before_Pa(p_Pa); })
+      return l.traction_before_Pa(p_Pa);
+    else if constexpr (HasStates<Law>)
+      return steady_coefficient(l, l.V_i_m_per_s) * p_Pa;
+    else
+      return nan;
   });
 }
 
 void set_initial_slip_rate(FrictionLaw& law, double t_Pa, double p_Pa) {
   visit(law, [&]<class Law>(const Law& l) {
-    if constexpr (HasState<Law>)
+    if constexpr (requires { l.theta_i_s; })
       if (l.theta_i_s > 0) law.parameter("V_i_m_per_s") = l.slip_rate_before_m_per_s(t_Pa, p_Pa);
   });
 }

@@ -24,14 +24,20 @@ namespace slipfront::interface {
 using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
                                     std::span<double> mu)>;
 
-/// A law of one's own with states, which never sticks. [nodes]
+/// Values of a law's states. [states][nodes]
+using LawStates = std::vector<std::vector<double>>;
+
+/// A law of one's own with states, which never sticks: as those of the registry (friction/state_law.hpp),
+/// over all nodes at once. [nodes]
 struct StateArrayLaw {
-  using States = std::vector<std::vector<double>>;
-  /// mu at slip rates V > 0; it rises with V, and is odd.
-  std::function<void(std::span<const double> speed_m_per_s, const States& states, std::span<double> mu)>
+  std::function<void(std::span<const double> speed_m_per_s, const LawStates& states, std::span<double> mu)>
       coefficient;
-  /// States after a time at slip rates |V|.
-  std::function<void(std::span<const double> speed_m_per_s, double dt_s, States& states)> evolve;
+  std::function<void(std::span<const double> speed_m_per_s, double dt_s, LawStates& states)> evolve;
+  /// Fills in the states with which a node begins that has t and p. Null: those of the law of the registry in
+  /// whose place it is.
+  std::function<void(std::span<const double> t_Pa, std::span<const double> p_Pa, LawStates& states)> initial =
+      nullptr;
+  std::vector<LawState> states = {};  ///< with `initial`; their names must live as long as the law
 };
 
 /// A law of the registry: its name in the case file, its parameters, its lists of numbers and its states. One
@@ -61,10 +67,11 @@ class FrictionLaw {
   }
 
   std::string_view name() const { return name_; }
-  /// Those that the law's struct declares as the array `states`; arrays Interface::law_states are theirs.
+  /// Those of the law's struct or function; arrays Interface::law_states are theirs.
   std::span<const LawState> states() const { return states_; }
-  /// Whether it has any: such a law never sticks.
-  bool has_state() const { return !states_.empty(); }
+  bool has_states() const { return !states_.empty(); }
+  /// Whether nodes slip under any traction, so that none begins or ceases to: laws with states.
+  bool never_sticks() const { return has_states(); }
 
   /// The struct again; its lists are those of this law, which must outlive it.
   /// @pre it is this law's
@@ -84,6 +91,7 @@ class FrictionLaw {
   /// Strength in contact besides mu p; 0 of a law with a state, which has no such parameter.
   double cohesion_Pa() const { return cohesion_Pa_; }
 
+  bool has_parameter(std::string_view key) const;
   /// @pre the law has this parameter, named as in the table [friction]
   double& parameter(std::string_view key);
   double parameter(std::string_view key) const;
@@ -95,11 +103,13 @@ class FrictionLaw {
   void set_function(ArrayLaw function) { function_ = std::make_shared<const ArrayLaw>(std::move(function)); }
   /// Null where there is none.
   const ArrayLaw* function() const { return function_.get(); }
-  /// Sets a law with states, which begin as those of this law.
+  /// Sets a law with states in place of this one, which has states, too. Thresholds and accuracies, statics
+  /// and what is said of a case still follow from this law.
   void set_function(StateArrayLaw law) {
     state_function_ = std::make_shared<const StateArrayLaw>(std::move(law));
+    if (state_function_->initial) states_ = state_function_->states;
   }
-  const StateArrayLaw* state_function() const { return state_function_.get(); }
+  const std::shared_ptr<const StateArrayLaw>& state_function() const { return state_function_; }
 
  private:
   std::string_view name_;
@@ -142,18 +152,20 @@ double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double
 double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m);
 /// Whether mu rises with the slip rate somewhere, of a law without a state.
 bool strengthens(const FrictionLaw& law);
-/// What a law with a state does to small changes of steady sliding: mu answers the slip rate at once, and by
-/// the state with a delay.
+/// What a law with states does to small changes of steady sliding: mu answers the slip rate at once, and by
+/// the states with a delay.
 struct StateResponse {
-  double a, b;   ///< d mu/d ln V at once, and what the state takes back of it
-  double d_c_m;  ///< slip over which the state follows
+  double a, b;   ///< d mu/d ln V at once, and what the states take back of it
+  double d_c_m;  ///< slip over which they follow: 1 - 1/e of b has come by then
   double V_m_per_s;
   double breakdown_per_m;  ///< fall of mu with slip behind a fast tip
 };
 /// At a slip rate, at V_i where that is faster; none for laws without a state.
 std::optional<StateResponse> state_response(const FrictionLaw& law, double speed_m_per_s);
-/// What friction of a law with a state does behind a tip that slips at a constant rate: psi falls from what t
-/// and p have made of it before the event to that of steady sliding.
+/// Its a, of steady sliding at V_i. @pre the law has states
+double direct_effect(const FrictionLaw& law);
+/// What friction of a law with states does behind a tip that slips at a constant rate: it falls from what the
+/// states before the event make of it to that of steady sliding.
 struct StateBreakdown {
   double energy_over_pressure_m;  ///< int (mu - residual coefficient) d slip
   double residual_coefficient;    ///< of steady sliding

@@ -2,12 +2,13 @@
 #include "interface/interface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
+#include "interface/answers.hpp"
 #include "interface/friction/registry.hpp"
 #include "interface/node.hpp"
-#include "interface/state_array_law.hpp"
 
 namespace slipfront::interface {
 
@@ -103,41 +104,24 @@ struct RegistryLaw {
     set_tip();
   }
   void set_tip() {
-    if constexpr (HasState<Law>) constants.tip_slip_rate_m_per_s = SimdVector{} + tip_slip_rate_m_per_s;
+    if constexpr (HasStates<Law>) constants.tip_slip_rate_m_per_s = SimdVector{} + tip_slip_rate_m_per_s;
   }
 };
 
-/// Coefficients that an ArrayLaw has given, evaluation by evaluation, and what is asked for beyond them.
-/// Arrays are as long as all lanes are.
-struct Answers {
-  std::vector<std::vector<double>> mu;        ///< [evaluations][nodes]
-  std::vector<double> speed_m_per_s, slip_m;  ///< of the evaluation that is asked for [nodes]
-  bool asked = false;
-};
-
-/// The evaluator of one block of lanes: its k-th call takes the k-th answer, or asks.
-struct AskedInLanes {
-  Answers* answers;
-  std::size_t node = 0;
-  mutable std::size_t calls = 0;  ///< of this block so far
-  SimdVector operator()(SimdVector speed_m_per_s, SimdVector slip_m) const {
-    const std::size_t k = calls++;
-    if (k < answers->mu.size()) return load(answers->mu[k].data() + node);
-    if (k == answers->mu.size()) {
-      store(answers->speed_m_per_s.data() + node, speed_m_per_s);
-      store(answers->slip_m.data() + node, slip_m);
-      answers->asked = true;
-    }
-    return SimdVector{};
-  }
-};
-
-struct LawOverArrays {
+/// A law over arrays.
+struct ArrayLawInLanes {
   static constexpr bool strengthens = false;
   static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
   static constexpr std::size_t n_states = 0;
-  LawConstants<AskedInLanes, SimdVector> constants;
+  LawConstants<Answers::Evaluator<SimdVector>, SimdVector> constants;
   void go_to(std::size_t node) { constants.mu = {constants.mu.answers, node}; }
+};
+struct StateArrayLawInLanes {
+  static constexpr bool strengthens = false;
+  static constexpr SlipMemory memory = SlipMemory::none;
+  static constexpr std::size_t n_states = 0;  // all nodes' evolve at once
+  StateLawConstants<Answers::Evaluator<SimdVector>, SimdVector> constants;
+  void go_to(std::size_t node) { constants.law = {constants.law.answers, node}; }
 };
 
 // Flattened: the compiler would keep the nodes in memory between these functions. The constants are copied:
@@ -169,34 +153,61 @@ template <ContactAlgorithm algorithm, class Law, class Regularised>
   return any(changed);
 }
 
-/// The update by a law over arrays: again and again from the same state, each time with one more answer,
-/// until nothing is left to ask.
+/// The update by a law over arrays, which is asked by `law`.
+template <ContactAlgorithm algorithm, class Law, class Regularised, class Ask>
+bool update_by(Answers& answers, const Law& law, const Regularised& regularisation, double dt_s,
+               Interface& state, const Ask& ask) {
+  Interface trial = state;
+  bool changed = false;
+  answers.complete(
+      [&] {
+        trial = state;
+        changed = update<algorithm>(law, regularisation, dt_s, trial);
+      },
+      ask);
+  state = std::move(trial);
+  return changed;
+}
+
 template <ContactAlgorithm algorithm, class Regularised>
-bool update_by(const FrictionLaw& of, const Regularised& regularisation, double dt_s, Interface& state) {
-  const ArrayLaw& law = *of.function();
-  const std::size_t padded = (state.size() + lanes - 1) / lanes * lanes;
-  Answers answers;
+bool update_by(const ArrayLaw& function, const FrictionLaw& of, const Regularised& regularisation,
+               double dt_s, Interface& state) {
+  Answers answers(state.size());
   const auto all = [](double value) { return SimdVector{} + value; };
-  const LawOverArrays asking{
+  const ArrayLawInLanes law{
       {{&answers}, all(static_coefficient(of)), all(kinetic_coefficient(of)), all(of.cohesion_Pa()), all(0)}};
-  while (true) {
-    answers.asked = false;
-    answers.speed_m_per_s.assign(padded, 0);
-    answers.slip_m.assign(padded, 0);
-    Interface trial = state;
-    const bool changed = update<algorithm>(asking, regularisation, dt_s, trial);
-    if (!answers.asked) {
-      state = std::move(trial);
-      return changed;
-    }
-    auto& mu = answers.mu.emplace_back(padded);
-    law({answers.speed_m_per_s.data(), state.size()}, {answers.slip_m.data(), state.size()},
-        {mu.data(), state.size()});
-    std::fill(mu.begin() + std::ssize(state.t_Pa), mu.end(), mu[state.size() - 1]);
-  }
+  return update_by<algorithm>(answers, law, regularisation, dt_s, state, function);
+}
+
+template <class Regularised>
+bool update_by(const StateArrayLaw& function, const ContactModel& model, const Regularised& regularisation,
+               double dt_s, Interface& state) {
+  Answers answers(state.size());
+  const StateArrayLawInLanes law{{{&answers}, SimdVector{} + model.tip_slip_rate_m_per_s}};
+  const bool changed = update_by<ContactAlgorithm::direct>(
+      answers, law, regularisation, dt_s, state, [&](auto speed_m_per_s, auto /*slip_m*/, auto mu) {
+        coefficients(function, speed_m_per_s, state.law_states, mu);
+      });
+  std::vector<double> speed_m_per_s;
+  for (const double V : state.slip_rate_m_per_s) speed_m_per_s.push_back(std::abs(V));
+  function.evolve(speed_m_per_s, dt_s, state.law_states);
+  return changed;
 }
 
 }  // namespace
+
+void set_initial_states(const ContactModel& model, std::span<const double> t_Pa, std::span<const double> p_Pa,
+                        LawStates& states) {
+  if (const auto& law = model.law.state_function(); law && law->initial)
+    return law->initial(t_Pa, p_Pa, states);
+  visit(model.law, [&]<class Law>(const Law&) {
+    if constexpr (HasStates<Law>)
+      for (std::size_t i = 0; i < t_Pa.size(); ++i) {
+        const auto of_node = model.law_at(i).as<Law>().initial(t_Pa[i], p_Pa[i]);
+        for (std::size_t k = 0; k < of_node.size(); ++k) states[k][i] = of_node[k];
+      }
+  });
+}
 
 void start_contact(const ContactModel& model, Interface& s) {
   s.begun = false;
@@ -215,30 +226,27 @@ void start_contact(const ContactModel& model, Interface& s) {
       s.locked[i] = s.p_Pa[i] > 0;
     }
   });
-  visit(model.law, [&]<class Law>(const Law&) {
-    if constexpr (HasState<Law>)
-      for (std::size_t i = 0; i < s.size(); ++i)
-        s.law_states[0][i] = model.law_at(i).as<Law>().state_before(s.t_Pa[i], s.p_Pa[i]);
-  });
+  set_initial_states(model, s.t_Pa, s.p_Pa, s.law_states);
 }
 
 bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   const double since_last_s = state.begun ? dt_s : 0;
   state.begun = true;
-  if (model.law.function())
+  if (const auto* law = model.law.function())
     return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
       return model.algorithm == ContactAlgorithm::direct
-                 ? update_by<ContactAlgorithm::direct>(model.law, regularisation, dt_s, state)
-                 : update_by<ContactAlgorithm::predictor_corrector>(model.law, regularisation, dt_s, state);
+                 ? update_by<ContactAlgorithm::direct>(*law, model.law, regularisation, dt_s, state)
+                 : update_by<ContactAlgorithm::predictor_corrector>(*law, model.law, regularisation, dt_s,
+                                                                    state);
     });
-  if (const auto* law = model.law.state_function())
+  if (const auto& law = model.law.state_function())
     return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
       return update_by(*law, model, regularisation, dt_s, state);
     });
   return visit(model.law, [&]<class Law>(const Law& one) {
     const auto update_by_law = [&](const auto& law) {
       return with_regularisation(model.regularisation, since_last_s, [&](const auto& regularisation) {
-        if constexpr (!HasState<Law>)
+        if constexpr (!HasStates<Law>)
           if (model.algorithm == ContactAlgorithm::predictor_corrector)
             return update<ContactAlgorithm::predictor_corrector>(law, regularisation, dt_s, state);
         SLIPFRONT_ASSERT(model.algorithm == ContactAlgorithm::direct, "a state needs the direct algorithm");

@@ -73,7 +73,7 @@ struct Interface {
   std::vector<double> acceleration_m_per_s2;  ///< along x, of the last update; predictor-corrector only
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
   /// State variables of the friction law, see FrictionLaw::states.
-  std::vector<std::vector<double>> law_states;
+  LawStates law_states;
   bool is_time_weakening = false;
   bool begun = false;  ///< whether there was an update since start_contact
 
@@ -133,6 +133,10 @@ void for_each_field(State& state, F&& f) {
 /// pressure in equilibrium with it, nodes under pressure in contact. `strength_fraction` is taken as it is: a
 /// patch that is weakened after this call loses its strength at the rate of the regularisation.
 void start_contact(const ContactModel& model, Interface& state);
+
+/// States with which nodes begin that have t and p, of a law that has some. [nodes]
+void set_initial_states(const ContactModel& model, std::span<const double> t_Pa, std::span<const double> p_Pa,
+                        LawStates& states);
 
 /// Contact and friction update for lumped mass. Reads the trial motion and the memory, writes all results and
 /// the memory of `state`.

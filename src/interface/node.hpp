@@ -6,10 +6,11 @@
 
 #include "base/lanes.hpp"
 #include "base/numbers.hpp"
+#include "interface/balance.hpp"
 #include "interface/friction/parameter.hpp"
+#include "interface/friction/state_law.hpp"
 #include "interface/interface.hpp"
 #include "interface/regularisation.hpp"
-#include "interface/state_node.hpp"
 
 // The contact update of a node, or of `lanes` of them: written once for a value type V.
 namespace slipfront::interface {
@@ -186,12 +187,65 @@ inline void slide(const LawConstants<Mu, V>& law, const Regularised& regularisat
   n.memory = now;
 }
 
-/// Friction of a law with a state, psi, that never sticks: the state of this time and the slip rate V at this
+/// Traction of a node in contact by its slip rate, at given states.
+template <class Law, class V, std::size_t n_states>
+struct RateFriction {
+  static constexpr double slowest_m_per_s = 1e-12;
+  const Law& law;
+  const std::array<V, n_states>& states;
+  V p, last, mu, effect;  ///< at `last`: mu, and d mu/d ln V
+
+  RateFriction(const Law& law_, const std::array<V, n_states>& states_, V p_Pa, V last_speed)
+      : law(law_),
+        states(states_),
+        p(p_Pa),
+        last(select(last_speed < slowest_m_per_s, V{} + slowest_m_per_s, last_speed)) {
+    constexpr double small = 1e-4;
+    const V below = law.coefficient((1 - small) * last, states),
+            above = law.coefficient((1 + small) * last, states);
+    mu = 0.5 * (below + above);
+    effect = (above - below) / (2 * small);
+  }
+  /// Stiffness of the mass over that of the friction.
+  V softness(V impedance) const { return last * impedance / (effect * p); }
+  /// @param most  slip rate without friction, at w of the way through the step
+  V traction(V most, V impedance, V w) const {
+    const V size = select(most > 1e-200, most, V{} + 1e-200), per_rate = impedance / w;
+    const V k = p / (per_rate * size);
+    // Newton's step over ln V from the last rate.
+    const V at = select(last < size, last, size), left = at / size;
+    const V guess = logarithm(size / at) + (k * mu - (1 - left)) / (k * effect + left);
+    const auto of_rate = [&](V speed) { return law.coefficient(speed, states); };
+    return decay(log_slowing(of_rate, size, k, guess)).lost * size * per_rate;
+  }
+};
+/// The same with an arsinh, by its inverse.
+template <IsArsinh Law, class V, std::size_t n_states>
+struct RateFriction<Law, V, n_states> {
+  const Law& law;
+  V s, a_p, per_a_p, last;
+
+  RateFriction(const Law& law_, const std::array<V, n_states>& states, V p_Pa, V last_speed)
+      : law(law_), a_p(law.a * p_Pa), per_a_p(1 / a_p), last(last_speed) {
+    const V of_psi = sum_of(states) * law.per_a;
+    s = select(of_psi < least_state, V{} + least_state, of_psi);
+  }
+  V softness(V impedance) const { return last * impedance * per_a_p; }
+  V traction(V most, V impedance, V w) const {
+    const V per_rate = impedance * per_a_p / w;  // tractions over a p
+    const V over_V0 = most * law.per_V0_s_per_m;
+    const V log_trial = logarithm(select(over_V0 > 1e-200, over_V0, V{} + 1e-200));
+    return a_p * root_of_traction(most * per_rate, law.V0_m_per_s * per_rate, s, log_trial);
+  }
+};
+
+/// Friction of a law with states, which never sticks: the states of this time and the slip rate V at this
 /// time give t. V is between the half-step velocities before and after, w of the way. The fewer nodes are so
 /// stiff that V is not in the middle the shorter the step, and on a given mesh the order two remains.
-template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Regularised, class V>
+template <ContactAlgorithm algorithm, SlipMemory, bool, class Law, class Regularised, class V,
+          std::size_t n_states>
 inline void slide(const StateLawConstants<Law, V>& constants, const Regularised& regularisation, double dt_s,
-                  V impedance_x, Node<V, 1>& n) {
+                  V impedance_x, Node<V, n_states>& n) {
   const auto& law = constants.law;
   const V last_rate = n.slip_rate_m_per_s;
   const Memory<V> now =
@@ -201,21 +255,13 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Regularised&
   const Mask<V> in_contact = pressure > 0;
   const V p = select(in_contact, pressure, V{} + 1);
 
-  V& psi = n.law_states[0];
   const V v_trial = n.v_x_m_per_s;
-  const V of_psi = psi * law.per_a, s = select(of_psi < least_state, V{} + least_state, of_psi);
-  const V a_p = law.a * p, per_a_p = 1 / a_p;
-  // Stiffness of the mass over that of the friction, a p/V.
-  const V softness = absolute(last_rate) * impedance_x * per_a_p;
-  V w = implicit_weight(softness);
+  const RateFriction friction(law, n.law_states, p, absolute(last_rate));
+  V w = implicit_weight(friction.softness(impedance_x));
   V t{}, v_x{}, rate{};
   const auto solve = [&] {
     rate = w * v_trial + (1 - w) * last_rate;
-    const V per_rate = impedance_x * per_a_p / w;  // tractions over a p
-    const V size = absolute(rate), over_V0 = size * law.per_V0_s_per_m;
-    const V log_trial = logarithm(select(over_V0 > 1e-200, over_V0, V{} + 1e-200));
-    const V y = root_of_traction(size * per_rate, law.V0_m_per_s * per_rate, s, log_trial);
-    t = select(in_contact, copy_sign(a_p * y, rate), V{});
+    t = select(in_contact, copy_sign(friction.traction(absolute(rate), impedance_x, w), rate), V{});
     v_x = v_trial - t / impedance_x;
   };
   solve();
@@ -234,7 +280,7 @@ inline void slide(const StateLawConstants<Law, V>& constants, const Regularised&
   n.slipping = !(n.onset_ratio <= 1);  // a motion that is not a number is seen as slip
   n.slip_m += select(in_contact, absolute(v_x) * dt_s, V{});
   n.memory = now;
-  psi = law.evolved(psi, absolute(v_x), dt_s);
+  n.law_states = law.evolved(n.law_states, absolute(v_x), dt_s);
 }
 
 /// @param law   ConstantsOf the node's law

@@ -9,6 +9,7 @@
 
 #include "base/lanes.hpp"
 #include "interface/friction.hpp"
+#include "interface/friction/state_law.hpp"
 
 namespace slipfront::interface {
 
@@ -28,19 +29,15 @@ struct StateLawConstants {
   Evolving law;
   V tip_slip_rate_m_per_s;  ///< see ContactModel
 };
-template <class Law>
-inline constexpr std::size_t n_states_of = 0;
-template <HasState Law>
-inline constexpr std::size_t n_states_of<Law> = Law::states.size();
 template <class Law, class V, class Evaluator = typename Law::template Evaluator<V>>
 using ConstantsOf =
-    std::conditional_t<HasState<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
+    std::conditional_t<HasStates<Law>, StateLawConstants<Evaluator, V>, LawConstants<Evaluator, V>>;
 
 /// @param law  `of` as its struct
 template <class Law>
 ConstantsOf<Law, double> constants_of(const FrictionLaw& of, const Law& law) {
   const auto evaluator = law.evaluator();
-  if constexpr (HasState<Law>)
+  if constexpr (HasStates<Law>)
     return {evaluator, 0};
   else
     return {evaluator, evaluator(0, 0), law.kinetic_coefficient(), of.cohesion_Pa(),

@@ -11,7 +11,7 @@ namespace slipfront::motion {
 
 namespace {
 
-/// Error of psi over a, and of slip over d_c, in a step.
+/// Error of ln V by the states', and of slip over d_c, in a step.
 constexpr double accuracy = 1e-5;
 
 }  // namespace
@@ -40,7 +40,7 @@ QuasiDynamicSlip::QuasiDynamicSlip(const statics::Statics& statics, interface::Q
       edge_speed_m_per_s_(edge_speed_m_per_s) {
   const auto resize = [&](Rates& rates) {
     rates.u_x.resize(tributary_m_.size());
-    rates.psi.resize(tributary_m_.size());
+    rates.law_states = friction_.initial_states();
   };
   resize(rates_);
   for (auto& rates : stages_) resize(rates);
@@ -48,30 +48,53 @@ QuasiDynamicSlip::QuasiDynamicSlip(const statics::Statics& statics, interface::Q
 
 void QuasiDynamicSlip::balance(QuasiDynamicState& state, Rates& rates) const {
   bodies_->equilibrate(state.shear_m, state.u_x_m, state.t_Pa, state.p_Pa, state.gap_m);
-  friction_.balance(state.t_Pa, state.p_Pa, state.psi, state.slip_rate_m_per_s, rates.psi);
+  slide(state, rates);
+}
+
+void QuasiDynamicSlip::slide(QuasiDynamicState& state, Rates& rates) const {
+  constexpr double part = 1e-5;  // of a step: rates hardly change, and rounding counts for little
+  friction_.balance(state.t_Pa, state.p_Pa, state.law_states, part * next_dt_s_, state.slip_rate_m_per_s,
+                    rates.law_states);
   rates.u_x = state.slip_rate_m_per_s;
 }
 
+double QuasiDynamicSlip::first_dt_s() const {
+  constexpr double slowest_m_per_s = 1e-30;
+  return accuracy * std::ranges::min(friction_.d_c_m()) / std::max(now_.fastest_m_per_s(), slowest_m_per_s);
+}
+
 void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics::Contact> contact,
-                             std::vector<double> u_x_m, std::vector<double> psi) {
+                             std::vector<double> u_x_m, interface::LawStates law_states) {
   const std::vector<double> none(tributary_m_.size());
-  now_ = {time_s, shear_m, std::move(u_x_m), std::move(psi), none, none, none, none, std::move(contact)};
+  now_ = {time_s, shear_m, std::move(u_x_m),  std::move(law_states), none, none,
+          none,   none,    std::move(contact)};
   for (auto& state : now_.contact)
     if (state == statics::Contact::slip) state = statics::Contact::stick;
   bodies_ = statics_.sliding(now_.contact);
   works_ = {};
-  next_dt_s_ = 0;
+  next_dt_s_ = first_dt_s();
   balance(now_, rates_);
   light_Pa_ = light_pressure_Pa(now_.p_Pa, tributary_m_);
   settle_contact();
+  next_dt_s_ = first_dt_s();  // now that slip rates are known
+  slide(now_, rates_);
+  // Rates by differences hold over times in which states change little.
+  const auto largest_change = [&] {
+    double largest = 0;
+    for (std::size_t i = 0; i < tributary_m_.size(); ++i)
+      largest = std::max(
+          largest, friction_.change(i, [&](std::size_t k) { return rates_.law_states[k][i] * next_dt_s_; }));
+    return largest;
+  };
+  while (friction_.takes_differences() && largest_change() > 1) {
+    next_dt_s_ *= 0.1;
+    slide(now_, rates_);
+  }
 }
 
 bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
                                   const std::function<bool()>& after_step) {
-  constexpr double beyond = 1.1, slowest_m_per_s = 1e-30;
-  if (next_dt_s_ == 0)
-    next_dt_s_ =
-        accuracy * std::ranges::min(friction_.d_c_m()) / std::max(now_.fastest_m_per_s(), slowest_m_per_s);
+  constexpr double beyond = 1.1;
   while (now_.time_s < end_s) {
     if (now_.fastest_m_per_s() >= slip_rate_m_per_s) return true;
     if (now_.time_s + next_dt_s_ == now_.time_s)
@@ -83,7 +106,10 @@ bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
     const double remaining_s = end_s - now_.time_s;
     const bool is_last = next_dt_s_ >= remaining_s;
     const double taken_s = try_step(std::min(next_dt_s_, remaining_s));
-    if (taken_s == 0) continue;
+    if (taken_s == 0) {
+      slide(now_, rates_);  // over a shorter time
+      continue;
+    }
     if (next_.fastest_m_per_s() > beyond * slip_rate_m_per_s) {
       next_dt_s_ = 0.5 * taken_s;
       continue;
@@ -141,31 +167,36 @@ double QuasiDynamicSlip::try_step(double dt_s) {
   // The stages' rates: now, at a half, at three quarters, and at the end, where the next step begins.
   Rates &k2 = stages_[0], &k3 = stages_[1], &k4 = stages_[2];
   const auto& k1 = rates_;
+  const auto slip = [](const Rates& r) -> const std::vector<double>& { return r.u_x; };
+  const auto of_state = [](std::size_t k) {
+    return [k](const Rates& r) -> const std::vector<double>& { return r.law_states[k]; };
+  };
   next_ = now_;
   const auto go = [&](double share, const auto& sum, Rates& rates) {
+    const auto moved = [&](const std::vector<double>& from, const auto& of, std::vector<double>& to) {
+      for (std::size_t i = 0; i < n; ++i) to[i] = from[i] + dt_s * sum(of, i);
+    };
     next_.time_s = now_.time_s + share * dt_s;
     next_.shear_m = now_.shear_m + edge_speed_m_per_s_ * share * dt_s;
-    for (std::size_t i = 0; i < n; ++i) {
-      next_.u_x_m[i] = now_.u_x_m[i] + dt_s * sum(&Rates::u_x, i);
-      next_.psi[i] = now_.psi[i] + dt_s * sum(&Rates::psi, i);
-    }
+    moved(now_.u_x_m, slip, next_.u_x_m);
+    for (std::size_t k = 0; k < now_.law_states.size(); ++k)
+      moved(now_.law_states[k], of_state(k), next_.law_states[k]);
     balance(next_, rates);
   };
-  using Part = std::vector<double> Rates::*;
   go(
-      0.5, [&](Part p, std::size_t i) { return 0.5 * (k1.*p)[i]; }, k2);
+      0.5, [&](const auto& p, std::size_t i) { return 0.5 * p(k1)[i]; }, k2);
   go(
-      0.75, [&](Part p, std::size_t i) { return 0.75 * (k2.*p)[i]; }, k3);
+      0.75, [&](const auto& p, std::size_t i) { return 0.75 * p(k2)[i]; }, k3);
   go(
-      1, [&](Part p, std::size_t i) { return (2 * (k1.*p)[i] + 3 * (k2.*p)[i] + 4 * (k3.*p)[i]) / 9; }, k4);
+      1, [&](const auto& p, std::size_t i) { return (2 * p(k1)[i] + 3 * p(k2)[i] + 4 * p(k3)[i]) / 9; }, k4);
   double error = 0;
-  const auto of_pair = [&](Part p, std::size_t i) {
-    return dt_s * std::abs(-5 * (k1.*p)[i] / 72 + (k2.*p)[i] / 12 + (k3.*p)[i] / 9 - (k4.*p)[i] / 8);
+  const auto of_pair = [&](const auto& p, std::size_t i) {
+    return dt_s * std::abs(-5 * p(k1)[i] / 72 + p(k2)[i] / 12 + p(k3)[i] / 9 - p(k4)[i] / 8);
   };
   for (std::size_t i = 0; i < n; ++i) {
     if (now_.contact[i] != statics::Contact::stick) continue;
-    error = std::max(
-        {error, of_pair(&Rates::psi, i) / friction_.a()[i], of_pair(&Rates::u_x, i) / friction_.d_c_m()[i]});
+    const double of_states = friction_.change(i, [&](std::size_t k) { return of_pair(of_state(k), i); });
+    error = std::max({error, of_states, of_pair(slip, i) / friction_.d_c_m()[i]});
   }
   if (!std::isfinite(error)) {
     next_dt_s_ = 0.1 * dt_s;

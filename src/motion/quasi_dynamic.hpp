@@ -22,7 +22,7 @@ struct QuasiDynamicState {
   double time_s = 0;
   double shear_m = 0;         ///< of the loaded edge along x
   std::vector<double> u_x_m;  ///< relative to a base
-  std::vector<double> psi;
+  interface::LawStates law_states;
   std::vector<double> slip_rate_m_per_s;
   std::vector<double> t_Pa, p_Pa;  ///< of the equilibrium: friction and what radiates
   std::vector<double> gap_m;       ///< between the surfaces
@@ -32,7 +32,7 @@ struct QuasiDynamicState {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(time_s, shear_m, u_x_m, psi, slip_rate_m_per_s, t_Pa, p_Pa, gap_m, contact);
+    archive(time_s, shear_m, u_x_m, law_states, slip_rate_m_per_s, t_Pa, p_Pa, gap_m, contact);
   }
 };
 
@@ -44,7 +44,7 @@ struct SlowWorks {
   double radiated_J_per_m = 0;     ///< in waves, by the radiation damping
 };
 
-/// Quasi-dynamic slip under a law with a state (Rice 1993): bodies in equilibrium, but for the traction that
+/// Quasi-dynamic slip under a law with states (Rice 1993): bodies in equilibrium, but for the traction that
 /// slip radiates, under an edge that moves at a constant speed. Steps by Bogacki and Shampine's pair of
 /// orders 3 and 2, as long as the error of a step allows.
 class QuasiDynamicSlip {
@@ -53,9 +53,9 @@ class QuasiDynamicSlip {
   QuasiDynamicSlip(const statics::Statics& statics, interface::QuasiDynamicFriction friction,
                    std::vector<double> tributary_m, double edge_speed_m_per_s);
 
-  /// From an equilibrium in which the slip rates follow from the tractions and psi.
+  /// From an equilibrium in which the slip rates follow from the tractions and the states.
   void start(double time_s, double shear_m, std::vector<statics::Contact> contact, std::vector<double> u_x_m,
-             std::vector<double> psi);
+             interface::LawStates law_states);
   /// From now on.
   void set_edge_speed(double m_per_s) { edge_speed_m_per_s_ = m_per_s; }
   /// @return why it ended: whether a node has passed the slip rate, by no more than a tenth, before the end
@@ -70,10 +70,14 @@ class QuasiDynamicSlip {
 
  private:
   struct Rates {
-    std::vector<double> u_x, psi;
+    std::vector<double> u_x;
+    interface::LawStates law_states;
   };
-  /// Finds what follows from the places, psi and the shear of a state.
+  /// Finds what follows from the places, the states and the shear of a state.
   void balance(QuasiDynamicState& state, Rates& rates) const;
+  /// Those that follow from the tractions.
+  void slide(QuasiDynamicState& state, Rates& rates) const;
+  double first_dt_s() const;
   /// One step of at most dt_s. @return its length, 0 where its error was too large
   double try_step(double dt_s);
   void add_works(const QuasiDynamicState& from, const QuasiDynamicState& to);

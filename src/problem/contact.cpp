@@ -78,7 +78,7 @@ void require_allowed(const Problem& problem, const std::vector<double>& x_m,
 
 /// Two of t, V_i and theta_i decide the third, at all nodes the same.
 void require_one_initial_state(const Problem& problem, const std::vector<FrictionLaw>& laws) {
-  if (!problem.friction.law.has_state()) return;
+  if (!problem.friction.law.has_parameter("theta_i_s")) return;
   const FrictionAlongX& along_x = problem.friction.along_x;
   const auto given =
       std::ranges::count_if(laws, [](const auto& law) { return law.parameter("theta_i_s") > 0; });
@@ -119,7 +119,7 @@ std::vector<FrictionLaw> friction_at(const Problem& problem, const std::vector<d
 double radiation_slip_rate_m_per_s(const Problem& problem) {
   double admittance = 0;
   for (const auto& body : problem.bodies) admittance += solid::shear_admittance_m_per_Pa_s(body.material);
-  return admittance * problem.friction.law.parameter("a") * nominal_pressure_Pa(problem);
+  return admittance * direct_effect(problem.friction.law) * nominal_pressure_Pa(problem);
 }
 
 double default_tip_slip_rate_m_per_s(const Problem& problem) {
@@ -147,7 +147,7 @@ interface::ContactModel contact_model(const Problem& problem, const std::vector<
   interface::ContactModel model {
     friction.law, friction.regularisation, friction.contact
   };
-  if (friction.law.has_state()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
+  if (friction.law.never_sticks()) model.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
   const auto laws = friction_at(problem, x_m, healed);
   if (!laws.empty())
     model.law_per_node = interface::NodeLaws(

@@ -93,7 +93,7 @@ struct Problem {
   bool is_by_ramp() const { return loading.method == statics::LoadingMethod::ramp; }
   bool is_sequence() const { return sequence.max_events > 1; }
   /// Whether slow slip lies between its events.
-  bool is_slow() const { return is_sequence() && friction.law.has_state(); }
+  bool is_slow() const { return is_sequence() && friction.law.never_sticks(); }
   /// Whether mu_s of nodes at rest grows between its events.
   bool heals() const { return is_sequence() && sequence.healing_per_e_fold > 0; }
   /// Whether prescribed tractions grow during the event.

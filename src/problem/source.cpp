@@ -47,7 +47,7 @@ std::string state_key(const input::Case& config) {
   using input::Stage;
   if (is_prestressed(config)) {
     const bool t_follows =
-        config.friction.has_state() && config.prestress.file.empty() && !config.prestress.t_Pa;
+        config.friction.has_states() && config.prestress.file.empty() && !config.prestress.t_Pa;
     return text_of_stages(config, {Stage::mesh, Stage::tractions}) +
            (t_follows ? text_of_stages(config, {Stage::motion}) : "") +
            (config.friction_along_x.varies() || config.friction.cohesion_Pa() > 0 ? strengths_text(config)

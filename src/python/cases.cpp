@@ -129,24 +129,39 @@ void fill(std::span<double> to, const nb::object& given, const char* name) {
   std::copy_n(values.data(), to.size(), to.begin());
 }
 
+nb::list list_of(const interface::LawStates& states) {
+  nb::list list;
+  for (const auto& values : states) list.append(copied(values));
+  return list;
+}
+void fill(interface::LawStates& states, const nb::list& given, const char* name) {
+  for (std::size_t k = 0; k < states.size(); ++k) fill(states[k], given[k], name);
+}
+
 /// Functions of Python as a law with states.
-interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& evolve) {
-  using States = interface::StateArrayLaw::States;
-  const auto list_of = [](const States& states) {
-    nb::list list;
-    for (const auto& values : states) list.append(copied(values));
-    return list;
+/// @param initial  with `states`, names and units of states of its own
+interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& evolve,
+                                const std::optional<nb::callable>& initial,
+                                const std::vector<std::pair<std::string, std::string>>& states) {
+  using interface::LawStates;
+  interface::StateArrayLaw law;
+  law.coefficient = [&mu_of](std::span<const double> speed_m_per_s, const LawStates& now,
+                             std::span<double> mu) {
+    const nb::gil_scoped_acquire locked;
+    fill(mu, mu_of(copied(speed_m_per_s), *list_of(now)), "mu");
   };
-  return {
-      [&mu_of, list_of](std::span<const double> speed_m_per_s, const States& states, std::span<double> mu) {
-        const nb::gil_scoped_acquire locked;
-        fill(mu, mu_of(copied(speed_m_per_s), *list_of(states)), "mu");
-      },
-      [&evolve, list_of](std::span<const double> speed_m_per_s, double dt_s, States& states) {
-        const nb::gil_scoped_acquire locked;
-        const nb::list after = nb::cast<nb::list>(evolve(dt_s, copied(speed_m_per_s), *list_of(states)));
-        for (std::size_t k = 0; k < states.size(); ++k) fill(states[k], after[k], "evolve");
-      }};
+  law.evolve = [&evolve](std::span<const double> speed_m_per_s, double dt_s, LawStates& now) {
+    const nb::gil_scoped_acquire locked;
+    fill(now, nb::cast<nb::list>(evolve(dt_s, copied(speed_m_per_s), *list_of(now))), "evolve");
+  };
+  if (!initial) return law;
+  law.initial = [&initial](std::span<const double> t_Pa, std::span<const double> p_Pa, LawStates& first) {
+    const nb::gil_scoped_acquire locked;
+    fill(first, nb::cast<nb::list>((*initial)(copied(t_Pa), copied(p_Pa))), "initial");
+  };
+  for (const auto& [name, unit] : states)
+    law.states.push_back({name.c_str(), unit.c_str(), "state of the law"});
+  return law;
 }
 
 /// A function of Python as a law over arrays. It is called without Python's lock.
@@ -158,24 +173,26 @@ interface::ArrayLaw law_of(const nb::callable& mu_of) {
       };
 }
 
-/// The event by a law in Python. One thread: all of them would wait for Python's lock.
+/// By a law in Python. One thread: all of them would wait for Python's lock.
 void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::callable& mu_of,
-                const std::optional<nb::callable>& evolve, nb::object progress) {
+                const std::optional<nb::callable>& evolve, const std::optional<nb::callable>& initial,
+                const std::vector<std::pair<std::string, std::string>>& states, nb::object progress) {
   Problem problem = problem::make_problem(given.config());
-  const Key law("friction.law");
-  if (problem.is_sequence())
-    throw UserError("{} is {}; a law in Python is of one event: set it to 1", Key("sequence.max_events"),
-                    problem.sequence.max_events);
-  if (evolve && !problem.friction.law.has_state())
-    throw UserError("evolve: {} = {} has no state variable; choose rate_and_state_*", law,
-                    problem.friction.law.name());
-  if (!evolve && problem.friction.law.has_state())
-    throw UserError("{} = {} has a state, which mu alone does not change; give evolve", law,
-                    problem.friction.law.name());
-  if (evolve)
-    problem.friction.law.set_function(law_of(mu_of, *evolve));
-  else
+  const Key key("friction.law");
+  if (evolve) {
+    if (!problem.friction.law.has_states())
+      throw UserError("evolve: {} = {} has no state variable; choose rate_and_state_*", key,
+                      problem.friction.law.name());
+    problem.friction.law.set_function(law_of(mu_of, *evolve, initial, states));
+  } else {
+    if (problem.friction.law.has_states())
+      throw UserError("{} = {} has a state, which mu alone does not change; give evolve", key,
+                      problem.friction.law.name());
+    if (problem.heals())
+      throw UserError("{} changes mu_s, which a law in Python does not see; remove it",
+                      Key("sequence.healing_per_e_fold"));
     problem.friction.law.set_function(law_of(mu_of));
+  }
   run_problem(given, problem, dir, false, 1, infinity, std::move(progress));
 }
 
@@ -369,10 +386,12 @@ void bind_cases(nb::module_& module) {
           [](const C& c) { c.placing_errors([&] { return run::check(problem::make_problem(c.config())); }); },
           "What can be checked without solving anything: memory, geometry; raises CaseError.");
   module.def(
-      "run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "evolve"_a.none(), "progress"_a.none(),
+      "run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "evolve"_a.none(), "initial"_a.none(),
+      "states"_a, "progress"_a.none(),
       "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a "
       "law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) "
-      "the list of states after a time.");
+      "the list of states after a time. states: names and units of states of its own, of which "
+      "initial(t_Pa, p_Pa) gives the list.");
   module.def("resume", &resume, "dir"_a, "case"_a.none(), "threads"_a.none(), "checkpoint_every_s"_a,
              "progress"_a.none(), "observers"_a,
              "Goes on with the unfinished run or sequence of a folder, or with a sequence that is complete "

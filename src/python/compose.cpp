@@ -206,7 +206,7 @@ class Stepper {
       if (std::ranges::find(keys_, key, &input::Override::first) != keys_.end())
         throw UserError("{} does nothing here: a stepper goes as far as it is told; remove it", Key(key));
     const Key tip("friction.tip_slip_rate_m_per_s");
-    if (problem_.friction.law.has_state() && !problem_.friction.tip_slip_rate_m_per_s)
+    if (problem_.friction.law.never_sticks() && !problem_.friction.tip_slip_rate_m_per_s)
       throw UserError("{} has no default here, where the pressure is not known yet; set it", tip);
     if (threads < 1) throw UserError("threads is {}; it must be at least 1", threads);
     std::vector<motion::BodySource> bodies = {{above_.mesh, above_.material}};

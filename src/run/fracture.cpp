@@ -244,7 +244,7 @@ double exponent_by_pressure(const fracture::Bodies& bodies, double residual_coef
 /// Median strength excess of the nodes that fronts run over; not a number under a law that never sticks.
 double median_strength_excess(const Laws& laws, const fracture::CrackLoads& loads,
                               const std::vector<fracture::PredictedFront>& fronts) {
-  if (laws[0].has_state()) return nan;
+  if (laws[0].never_sticks()) return nan;
   std::vector<double> S;
   for (const auto& front : fronts)
     for (const auto& point : front.points) {
@@ -280,7 +280,7 @@ std::vector<std::string> doubts_of_arrest(const Problem& problem, bool by_law, c
     doubts.emplace_back(
         "the trigger's force drives fronts further than the energy release rate at rest tells");
   if (!of_speeds.empty()) doubts.push_back(of_speeds);
-  if (problem.friction.law.has_state() && by_law)
+  if (problem.friction.law.never_sticks() && by_law)
     doubts.emplace_back("the residual friction depends on the slip rate");
   return doubts;
 }
@@ -314,7 +314,7 @@ void add_notes(const Problem& given, const Problem& problem, const fracture::Bod
   }
   if (problem.above().plate.sides == mesh::Sides::periodic)
     p.notes.emplace_back("periodic sides count as ends of the contact");
-  if (problem.friction.law.has_state() && by_law)
+  if (problem.friction.law.never_sticks() && by_law)
     p.notes.push_back(fmt::format(
         "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
         "the event on",
@@ -330,7 +330,7 @@ void add_notes(const Problem& given, const Problem& problem, const fracture::Bod
 }  // namespace
 
 bool has_fracture_energy(const Problem& problem) {
-  return problem.friction.law.has_state() || interface::weakening_slip_m(problem.friction.law);
+  return problem.friction.law.has_states() || interface::weakening_slip_m(problem.friction.law);
 }
 
 FrontPredictor::FrontPredictor(const Problem& given) : given_(given), problem_(in_fewer_elements(given)) {

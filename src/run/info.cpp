@@ -51,7 +51,7 @@ std::vector<std::size_t> nodes_that_can_slip(const Problem& problem, const mesh:
   std::vector<std::size_t> nodes;
   for (std::size_t k = 0; k < laws.size(); ++k) {
     const double short_Pa = interface::static_strength_Pa(laws[k], s.p_s_Pa[k]) - std::abs(s.t_s_Pa[k]);
-    if (laws[k].has_state() || largest_drop_Pa <= 0 || short_Pa <= stability::barrier_S * largest_drop_Pa)
+    if (laws[k].never_sticks() || largest_drop_Pa <= 0 || short_Pa <= stability::barrier_S * largest_drop_Pa)
       nodes.push_back(k);
   }
   return nodes;
@@ -62,7 +62,7 @@ std::vector<std::size_t> nodes_that_can_slip(const Problem& problem, const mesh:
 std::set<std::size_t> extreme_nodes(const std::vector<std::size_t>& among,
                                     const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
                                     const interface::Regularisation& regularisation) {
-  if (laws.front().has_state()) return {among.begin(), among.end()};
+  if (laws.front().never_sticks()) return {among.begin(), among.end()};
   std::vector<stability::Sliding> sliding;
   for (const auto node : among)
     sliding.push_back(stability::uniform_sliding(laws[node], 0, pressure_Pa, regularisation));

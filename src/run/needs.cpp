@@ -211,7 +211,7 @@ double slow_steps_of(const Problem& problem) {
   // Stiffness against waves of two elements.
   const double stiffness_Pa_per_m =
       0.5 * std::numbers::pi * stability::modulus_Pa(materials_of(problem)) / problem.element_size_m();
-  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * problem.friction.law.parameter("a") * p_Pa);
+  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * interface::direct_effect(problem.friction.law) * p_Pa);
 }
 
 /// The existing folder in which `folder` is or will be made.

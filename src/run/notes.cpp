@@ -197,7 +197,7 @@ void add_pusher(const Problem& problem, Notes& notes) {
 /// A tip that may be that of a wave.
 void add_tip_rate(const Problem& problem, Notes& notes) {
   constexpr double few = 0.1;
-  if (!problem.friction.law.has_state() || !problem.friction.tip_slip_rate_m_per_s) return;
+  if (!problem.friction.law.never_sticks() || !problem.friction.tip_slip_rate_m_per_s) return;
   const double usual_m_per_s = default_tip_slip_rate_m_per_s(problem);
   if (*problem.friction.tip_slip_rate_m_per_s < few * usual_m_per_s)
     notes.push_back(fmt::format(

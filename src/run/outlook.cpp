@@ -190,10 +190,10 @@ std::vector<std::string> doubts_of_growth(const Problem& problem, const Inside& 
   return doubts;
 }
 
-std::string note_on_mesh(double zone_elements, bool may_pass_c_S, bool has_state, bool nominal) {
+std::string note_on_mesh(double zone_elements, bool may_pass_c_S, bool never_sticks, bool nominal) {
   const auto is = fmt::format("the process zone has {:.3g} elements at rest and fewer in motion{}",
                               zone_elements, nominal ? ", under the nominal pressure" : "");
-  if (has_state && may_pass_c_S && zone_elements < elements_for_transition)
+  if (never_sticks && may_pass_c_S && zone_elements < elements_for_transition)
     return is +
            "; below 16 the mesh may decide whether fronts pass c_S, the outcome and not its digits alone: "
            "compare with half the plate.element_size_m";
@@ -219,7 +219,7 @@ void add_notes(const Problem& problem, RuptureOutlook& o) {
   if (!o.process_zone_elements) return;
   const auto bodies = materials_of(problem);
   if (auto note = note_on_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
-                               problem.friction.law.has_state(), o.nominal);
+                               problem.friction.law.never_sticks(), o.nominal);
       !note.empty())
     o.notes.push_back(std::move(note));
   const double length_m = stability::damping_length_m(bodies);
@@ -277,7 +277,7 @@ std::string weakening_along_x(const Problem& problem, const std::vector<double>&
 
 /// Weakening along x at the slip rate before the event and at 1 m/s, which differ under strong weakening.
 std::string steady_sliding(const Problem& problem, const std::vector<double>& x_m) {
-  if (!problem.friction.law.has_state()) return {};
+  if (!problem.friction.law.has_states()) return {};
   const auto slow = weakening_along_x(problem, x_m, 0), fast = weakening_along_x(problem, x_m, 1);
   return slow == fast ? slow : fmt::format("{}; at 1 m/s {}", slow, fast);
 }
@@ -290,7 +290,7 @@ RuptureOutlook outlook_of(const Problem& problem, const Inside& inside, const st
   o.nominal = nominal;
   o.of_nodes = stability::outlook(materials_of(problem), nodes);
   o.trigger_length_m = trigger_length_m(problem);
-  if (problem.friction.law.has_state()) o.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
+  if (problem.friction.law.never_sticks()) o.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
   o.steady_sliding = steady_sliding(problem, x_m);
   o.cracks = quick_prediction(problem);
   if (o.of_nodes.process_zone_m)

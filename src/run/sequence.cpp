@@ -75,18 +75,25 @@ class TurnFinder {
   double extreme_, amount_, direction_ = 1;
 };
 
-/// Finds that slip is steady: while all nodes that stick by friction slip by many d_c, psi stays as it is.
+/// Of a node's states.
+double change(const interface::QuasiDynamicFriction& friction, std::size_t node,
+              const interface::LawStates& states, const interface::LawStates& before) {
+  return friction.change(node, [&](std::size_t k) { return states[k][node] - before[k][node]; });
+}
+
+/// Finds that slip is steady: while all nodes that stick by friction slip by many d_c, states stay as they
+/// are.
 class SteadySlip {
  public:
   explicit SteadySlip(const interface::QuasiDynamicFriction& friction) : friction_(friction) {}
 
   /// @return whether it is steady
   bool see(const motion::QuasiDynamicState& state) {
-    constexpr double many = 10, least_change = 1e-3;  // of d_c, and of a
+    constexpr double many = 10, least_change = 1e-3;  // of d_c, and of that by which the rate changes e-fold
     bool has_slipped = !u_x_m_.empty();
-    for (std::size_t k = 0; k < psi_.size(); ++k) {
+    for (std::size_t k = 0; k < u_x_m_.size(); ++k) {
       if (state.contact[k] != statics::Contact::stick) continue;
-      if (std::abs(state.psi[k] - psi_[k]) > least_change * friction_.a()[k]) {
+      if (change(friction_, k, state.law_states, law_states_) > least_change) {
         u_x_m_.clear();
         break;
       }
@@ -94,13 +101,14 @@ class SteadySlip {
     }
     if (!u_x_m_.empty()) return has_slipped;
     u_x_m_ = state.u_x_m;
-    psi_ = state.psi;
+    law_states_ = state.law_states;
     return false;
   }
 
  private:
   const interface::QuasiDynamicFriction& friction_;
-  std::vector<double> u_x_m_, psi_;  ///< when psi changed last
+  std::vector<double> u_x_m_;        ///< when the states changed last
+  interface::LawStates law_states_;  ///< then
 };
 
 void add_event_works(const record::Energies& of_event, record::Energies& sum) {
@@ -123,7 +131,7 @@ Sequence::Sequence(const Problem& problem, const motion::Monitor& monitor, const
   describe_solver(problem, statics_, initial_);
   at_rest_ = statics_.tilted();
   if (problem.heals()) rest_.rests_since_s.assign(initial_.tributary_m.size(), 0);
-  if (problem.friction.law.has_state())
+  if (problem.friction.law.never_sticks())
     begin_slow_slip();
   else if (has_fracture_energy(problem))
     predictor_.emplace(problem);
@@ -321,28 +329,30 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   const auto& state = slow_->state();
   double row_rate_m_per_s = 0, last_row_s = -infinity;
   std::size_t n_rows = 0;
-  std::vector<double> row_V_m_per_s, row_psi;
+  std::vector<double> row_V_m_per_s;
+  interface::LawStates row_states;
   const auto u_tilted = relative(initial_, statics_.tilted());
   const auto give_row = [&] {
     if (std::exchange(last_row_s, state.time_s) == state.time_s) return;  // the end is such a step, too
     record::History row{
-        {state.time_s}, at_rest_.tractions.x_m, state.u_x_m, state.slip_rate_m_per_s, state.t_Pa, state.p_Pa,
-        {state.psi}};
+        {state.time_s}, at_rest_.tractions.x_m, state.u_x_m, state.slip_rate_m_per_s, state.t_Pa,
+        state.p_Pa,     state.law_states};
     for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += rest_.moved_m - u_tilted.x_m[k];
     slow_rows(row);
     ++n_rows;
     row_V_m_per_s = state.slip_rate_m_per_s;
-    row_psi = state.psi;
+    row_states = state.law_states;
   };
   const auto has_changed = [&] {
-    // psi has changed by this share of a; rates have doubled or halved, of nodes that are not far slower than
-    // the fastest: those of nodes that bear little go up and down by some per cent from step to step.
+    // States have changed by this share of an e-fold slip rate; rates have doubled or halved, of nodes that
+    // are not far slower than the fastest: those of nodes that bear little go up and down by some per cent
+    // from step to step.
     constexpr double of_state = 0.1, of_rate = 0.5, slow = 0.1;
     const double least_m_per_s = slow * state.fastest_m_per_s();
-    for (std::size_t k = 0; k < row_psi.size(); ++k) {
+    for (std::size_t k = 0; k < row_V_m_per_s.size(); ++k) {
       const double V = std::abs(state.slip_rate_m_per_s[k]), row_V = std::abs(row_V_m_per_s[k]);
       if (state.contact[k] == statics::Contact::stick &&
-          (std::abs(state.psi[k] - row_psi[k]) > of_state * slow_->friction().a()[k] ||
+          (change(slow_->friction(), k, state.law_states, row_states) > of_state ||
            std::abs(V - row_V) > of_rate * std::max({V, row_V, least_m_per_s})))
         return true;
     }
@@ -352,7 +362,7 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     const auto force = statics::contact_force(state.p_Pa, state.t_Pa, initial_.tributary_m);
     return force.shear_N_per_m / force.normal_N_per_m;
   };
-  slow_->start(rest_.time_s, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi);
+  slow_->start(rest_.time_s, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.law_states);
   const double rate_m_per_s = inertia_slip_rate_m_per_s(problem_);
   if (events_.empty() && state.fastest_m_per_s() >= rate_m_per_s)
     throw UserError(
@@ -401,7 +411,7 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
     if (contact == statics::Contact::slip) contact = statics::Contact::stick;
   initial_.subcritical = initial_.supercritical;
   initial_.critical_shear_m = initial_.subcritical.shear_m;
-  initial_.law_states = {state.psi};
+  initial_.law_states = state.law_states;
   if (has_forces(problem_))
     initial_.loads =
         resolved_loads(problem_, statics_, initial_.subcritical, initial_.subcritical, initial_.tributary_m);
@@ -437,7 +447,7 @@ void Sequence::record_event(const Result& result) {
   add_event_works(last, ends.energies);
   loading_.push_back(ends);
 
-  if (slow_) rest_.psi = at_end.law_states.front();
+  if (slow_) rest_.law_states = at_end.law_states;
   if (!rest_.rests_since_s.empty())
     for (const auto& onset : event.record.onsets) rest_.rests_since_s[onset.node] = rest_.time_s;
   equilibrate();
@@ -563,7 +573,7 @@ void Sequence::resume_event(const InitialState& initial) {
 void Sequence::serialize(StateArchive& archive) {
   auto rows = loading_;
   if (!archive.is_loading() && !is_in_event()) rows.resize(n_rows_at_rest_);
-  archive(rest_.time_s, rest_.moved_m, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.psi,
+  archive(rest_.time_s, rest_.moved_m, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.law_states,
           rest_.rests_since_s, u_begins_x_m_, n_rows_at_rest_, rows, events_);
   if (!archive.is_loading()) return;
   loading_ = std::move(rows);
@@ -577,7 +587,10 @@ void Sequence::serialize(StateArchive& archive) {
   require_possible(rest_.contact.size() == n_at_rest &&
                        std::ranges::all_of(rest_.contact,
                                            [](auto contact) { return contact <= statics::Contact::open; }) &&
-                       is_of(rest_.u_x_m, n_at_rest) && is_of(rest_.psi, slow_ ? n : 0) &&
+                       is_of(rest_.u_x_m, n_at_rest) &&
+                       rest_.law_states.size() == (slow_ ? problem_.friction.law.states().size() : 0) &&
+                       std::ranges::all_of(rest_.law_states,
+                                           [&](const auto& values) { return is_of(values, n); }) &&
                        is_of(rest_.rests_since_s, problem_.heals() ? n : 0) &&
                        is_of(u_begins_x_m_, is_in_event() ? n : 0) && n_rows_at_rest_ <= loading_.size() &&
                        std::isfinite(rest_.shear_m) && std::isfinite(rest_.time_s) &&

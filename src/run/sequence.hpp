@@ -62,8 +62,8 @@ class Sequence {
     double moved_m = 0;
     double shear_m = 0;  ///< of the top edge beyond that
     std::vector<statics::Contact> contact;
-    std::vector<double> u_x_m;          ///< [interface nodes] relative to a base, beyond that
-    std::vector<double> psi;            ///< [interface nodes] of a law with a state
+    std::vector<double> u_x_m;  ///< [interface nodes] relative to a base, beyond that
+    interface::LawStates law_states;
     std::vector<double> rests_since_s;  ///< [interface nodes] where mu_s grows at rest
   };
 

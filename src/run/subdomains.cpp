@@ -111,7 +111,7 @@ std::unique_ptr<motion::DistributedStepper> new_distributed_stepper(const Proble
     plan.threads = execution.threads;
     plan.whole_x_m = mesh::interface_x_m(initial.mesh);
     plan.probes = probes_of(problem, initial.mesh, initial.base);
-    if (problem.friction.law.has_state()) plan.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
+    if (problem.friction.law.never_sticks()) plan.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
     to.append(packed(plan, initial.mesh.grid, initial));
   });
   const auto plan = unpacked<Plan>(message);

@@ -27,10 +27,10 @@ void for_each_law(F&& f) {
 TEST(Registry, HoldsTheLawsTheCaseFileNames) {
   std::set<std::string> names;
   for_each_law([&](const auto& law) { names.insert(law.name); });
-  EXPECT_EQ(names, (std::set<std::string>{"velocity_weakening", "coulomb", "slip_weakening",
-                                          "slip_weakening_healing", "slip_weakening_exponential",
-                                          "slip_table", "slip_rate_table", "rate_and_state_aging",
-                                          "rate_and_state_slip", "rate_and_state_strong"}));
+  EXPECT_EQ(names, (std::set<std::string>{
+                       "velocity_weakening", "coulomb", "slip_weakening", "slip_weakening_healing",
+                       "slip_weakening_exponential", "slip_table", "slip_rate_table", "rate_and_state_aging",
+                       "rate_and_state_slip", "rate_and_state_strong", "rate_and_state_aging_two"}));
   EXPECT_EQ(names.size(), law_descriptions().size());
 }
 
@@ -38,7 +38,7 @@ TEST(Registry, EachLawIsUsableByDefault) {
   for_each_law([]<class Law>(const Law& law) {
     SCOPED_TRACE(law.name);
     EXPECT_EQ(law.inconsistency().text, "");
-    if constexpr (!HasState<Law>) {
+    if constexpr (!HasStates<Law>) {
       // Strength before slip is the static one; by default speed and slip never make it stronger, or weaker
       // than the kinetic one, which they reach.
       const auto mu = law.evaluator();
@@ -67,7 +67,7 @@ TEST(Registry, SlopesAreTheDerivativesWithTheSlipRate) {
   const double d = 1e-4;
   for_each_law([&]<class Law>(const Law& law) {
     SCOPED_TRACE(law.name);
-    if constexpr (!HasState<Law>) {
+    if constexpr (!HasStates<Law>) {
       const auto mu = law.evaluator();
       for (const double v : {0.01, 0.3, 2.0})
         EXPECT_NEAR(mu.slope_s_per_m(v, 1e-6), (mu(v + d, 1e-6) - mu(v - d, 1e-6)) / (2 * d), 3e-8);
@@ -204,7 +204,7 @@ TEST(FrictionTable, RefusesWhatIsNoTable) {
 TEST(StateBreakdown, OfAgingAndSlipLawsIsKnown) {
   constexpr double p_Pa = 5e6, t_Pa = 3.4e6, V = 1;
   const auto fall_of = [&](const auto& law) {
-    return law.state_before(t_Pa, p_Pa) - law.evaluator().steady_state(V);
+    return law.initial(t_Pa, p_Pa)[0] - law.evaluator().steady_state(V);
   };
   // At V far above d_c/theta psi falls linearly under the aging law, by b/d_c, exponentially under the slip
   // law.

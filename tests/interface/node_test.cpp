@@ -58,7 +58,7 @@ void expect_same_values(Interface a, Interface b) {
 template <ContactAlgorithm algorithm, bool strengthens, class Law, class Form>
 bool update_one_by_one(const FrictionLaw& of, const Law& law, const Form& form, Interface& s) {
   auto constants = constants_of(of, law);
-  if constexpr (HasState<Law>) constants.tip_slip_rate_m_per_s = ContactModel{}.tip_slip_rate_m_per_s;
+  if constexpr (HasStates<Law>) constants.tip_slip_rate_m_per_s = ContactModel{}.tip_slip_rate_m_per_s;
   bool changed = false;
   for (std::size_t i = 0; i < s.size(); ++i) {
     Node<double, n_states_of<Law>> n{};
@@ -96,7 +96,7 @@ bool update_one_by_one(const FrictionLaw& of, const Law& law, const Form& form, 
 bool update_one_by_one(const ContactModel& model, double since_last_s, Interface& s) {
   return visit(model.law, [&]<class Law>(const Law& law) {
     return with_regularisation(model.regularisation, since_last_s, [&](const auto& form) {
-      if constexpr (!HasState<Law>)
+      if constexpr (!HasStates<Law>)
         if (model.algorithm == ContactAlgorithm::predictor_corrector)
           return update_one_by_one<ContactAlgorithm::predictor_corrector, false>(model.law, law, form, s);
       if constexpr (requires { law.strengthens(); })

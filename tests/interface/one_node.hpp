@@ -9,6 +9,7 @@
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/exponential_slip_weakening.hpp"
 #include "interface/friction/rate_and_state.hpp"
+#include "interface/friction/rate_and_state_two.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/table.hpp"
 #include "interface/friction/velocity_weakening.hpp"
@@ -50,8 +51,8 @@ void for_each_model(F&& f) {
         for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
           f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
     }
-  for (const FrictionLaw& law :
-       {FrictionLaw(RateAndStateAging{}), FrictionLaw(RateAndStateSlip{}), FrictionLaw(RateAndStateStrong{})})
+  for (const FrictionLaw& law : {FrictionLaw(RateAndStateAging{}), FrictionLaw(RateAndStateSlip{}),
+                                 FrictionLaw(RateAndStateStrong{}), FrictionLaw(RateAndStateAgingTwo{})})
     for (const Relaxed relaxed : {Relaxed::none, Relaxed::pressure})
       f(ContactModel{law, {relaxed, 2e-6, 0.1, 2e-6}});
 }

@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
+#include "interface/node.hpp"
 #include "interface/node_laws.hpp"
-#include "interface/state_node.hpp"
 #include "one_node.hpp"
 
 namespace slipfront::interface {
@@ -40,6 +41,90 @@ TEST(RootOfTraction, SolvesItsEquationAtAllScales) {
   EXPECT_LT(worst, 1e-12);
 }
 
+TEST(LogSlowing, SolvesItsEquationAtAllScales) {
+  std::mt19937_64 random(1);
+  const auto between = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  int most_calls = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const double a = std::pow(10, between(-4, 0)), u = between(-20, 60), k = std::pow(10, between(-8, 8));
+    const double most = std::pow(10, between(-15, 3));
+    int calls = 0;
+    // a arsinh(exp(u) V)
+    const auto mu = [&](double V) {
+      ++calls;
+      const double log_z = u + std::log(V > 1e-290 ? V : 1e-290);
+      return a * (log_z > 20 ? log_z + std::log(2) : std::asinh(std::exp(log_z)));
+    };
+    const double d = log_slowing(mu, most, k, between(-10, 800));
+    // As from one step to the next.
+    calls = 0;
+    ASSERT_NEAR(log_slowing(mu, most, k, d + 0.02), d, 1e-11 * d + 1e-18);
+    most_calls = std::max(most_calls, calls);
+    const double mu_there = mu(most * std::exp(-d)), slope = k * a + std::exp(-d);
+    // 1e-18 of the slip rate is nothing.
+    ASSERT_NEAR((k * mu_there + std::expm1(-d)) / slope, 0,
+                1e-12 * std::max(d, std::min(1.0, k * mu_there)) + 1e-18);
+  }
+  EXPECT_LE(most_calls, 12);
+}
+
+/// Friction that stays at rest is not overcome by less.
+TEST(LogSlowing, StopsWhereThereIsFrictionWithoutSlip) {
+  const auto stops = [](double k) { return std::exp(-log_slowing([](double) { return 0.6; }, 1.0, k, 3.0)); };
+  EXPECT_LT(stops(2), 1e-300);
+  EXPECT_NEAR(stops(1), 0.4, 1e-14);
+}
+
+/// The aging law by its three functions alone.
+template <class V>
+struct ByItsFunctions {
+  RateAndStateAging::Evaluator<V> law;
+  using States = std::array<V, 1>;
+  V coefficient(V speed_m_per_s, const States& states) const {
+    return law.coefficient(speed_m_per_s, states);
+  }
+  States evolved(const States& states, V speed_m_per_s, double dt_s) const {
+    return law.evolved(states, speed_m_per_s, dt_s);
+  }
+};
+
+/// In lanes, from creep to fast slip, against Halley's steps.
+TEST(LogSlowing, MovesANodeAsTheInverseOfTheArsinh) {
+  const RateAndStateAging law;
+  const auto in_all = in_lanes(FrictionLaw(law), law);
+  const StateLawConstants<ByItsFunctions<SimdVector>, SimdVector> general{{in_all.law}, SimdVector{} + 0.1};
+  auto known = in_all;
+  known.tip_slip_rate_m_per_s = SimdVector{} + 0.1;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> power(-12, 1), part(-1, 1);
+  Node<SimdVector, 1> n{};
+  n.mass_per_length_kg_m2 = n.tangential_mass_ratio = n.strength_fraction = SimdVector{} + 1;
+  n.mass_per_length_kg_m2 *= mass;
+  n.law_states[0] = SimdVector{} + law.initial(2.5e6, p_Pa)[0];
+  auto m = n;
+  for (int step = 0; step < 300; ++step) {
+    for (int k = 0; k < lanes; ++k) {
+      n.v_x_m_per_s[k] = std::copysign(std::pow(10, power(random)), part(random)) + 2.6e6 / impedance;
+      n.v_y_m_per_s[k] = -p_Pa * (1 + 0.1 * part(random)) / impedance;
+    }
+    m.v_x_m_per_s = n.v_x_m_per_s, m.v_y_m_per_s = n.v_y_m_per_s;
+    const auto trial = n.v_x_m_per_s, last = n.slip_rate_m_per_s;
+    update_node<ContactAlgorithm::direct, SlipMemory::none>(known, Immediate{}, dt, n);
+    update_node<ContactAlgorithm::direct, SlipMemory::none>(general, Immediate{}, dt, m);
+    for (int k = 0; k < lanes; ++k) {
+      // w follows from a difference of mu, accurate to 1e-8: so much the places between the last rate and the
+      // new one are off.
+      ASSERT_NEAR(m.v_x_m_per_s[k], n.v_x_m_per_s[k],
+                  2e-8 * (std::abs(n.v_x_m_per_s[k]) + std::abs(last[k])) + 1e-14 * std::abs(trial[k]));
+      ASSERT_NEAR(m.t_Pa[k], n.t_Pa[k], 1e-8 * p_Pa);
+      ASSERT_NEAR(m.law_states[0][k], n.law_states[0][k], 1e-9);
+    }
+    m = n;
+  }
+}
+
 template <class Law>
 class RateAndStateLaws : public testing::Test {};
 using Laws = testing::Types<RateAndStateAging, RateAndStateSlip, RateAndStateStrong>;
@@ -48,11 +133,11 @@ TYPED_TEST_SUITE(RateAndStateLaws, Laws);
 TYPED_TEST(RateAndStateLaws, StartWithTheGivenTractionAndSlipRate) {
   const TypeParam law;
   for (const double t_Pa : {2.65e6, 1e3, 4e6}) {
-    const double psi = law.state_before(t_Pa, p_Pa);
+    const double psi = law.initial(t_Pa, p_Pa)[0];
     EXPECT_NEAR(coefficient_of(law, law.V_i_m_per_s, psi), t_Pa / p_Pa, 1e-13);
   }
-  const double steady = law.state_before(0, 0);
-  EXPECT_NEAR(coefficient_of(law, law.V_i_m_per_s, steady), law.static_coefficient(), 1e-13);
+  const double steady = law.initial(0, 0)[0];
+  EXPECT_NEAR(coefficient_of(law, law.V_i_m_per_s, steady), static_coefficient(law), 1e-13);
 }
 
 TYPED_TEST(RateAndStateLaws, EvolveExactlyAtConstantSlipRate) {

@@ -59,9 +59,10 @@ TEST_F(SlowBlock, FollowsTheEquationsOfMotion) {
     const auto e = statics_.slid_to(contact_, Values(y.begin(), y.begin() + std::ssize(contact_)), {},
                                     edge_speed_m_per_s * time_s);
     const Values psi(y.begin() + std::ssize(contact_), y.end());
-    Values V(n), psi_per_s(n);
-    law.balance(e.tractions.t_s_Pa, e.tractions.p_s_Pa, psi, V, psi_per_s);
-    V.insert(V.end(), psi_per_s.begin(), psi_per_s.end());
+    Values V(n);
+    interface::LawStates per_s(1, V);
+    law.balance(e.tractions.t_s_Pa, e.tractions.p_s_Pa, {psi}, nan, V, per_s);
+    V.insert(V.end(), per_s[0].begin(), per_s[0].end());
     return V;
   };
   const auto moved = [](Values y, const Values& by, double factor) {
@@ -69,7 +70,7 @@ TEST_F(SlowBlock, FollowsTheEquationsOfMotion) {
     return y;
   };
   Values y(n);
-  for (const double psi : law.initial_states()) y.push_back(psi);
+  for (const double psi : law.initial_states()[0]) y.push_back(psi);
   const int n_steps = 8000;
   const double dt_s = end_s / n_steps;
   for (int step = 0; step < n_steps; ++step) {
@@ -81,7 +82,7 @@ TEST_F(SlowBlock, FollowsTheEquationsOfMotion) {
   }
   for (std::size_t k = 0; k < n; ++k) {
     EXPECT_NEAR(slip.state().u_x_m[k], y[k], 1e-3 * law_.d_c_m) << k;
-    EXPECT_NEAR(slip.state().psi[k], y[n + k], 1e-3 * law_.a) << k;
+    EXPECT_NEAR(slip.state().law_states[0][k], y[n + k], 1e-3 * law_.a) << k;
   }
 }
 
@@ -127,7 +128,7 @@ TEST(QuasiDynamicSlip, ContactOpensAndCloses) {
     if (from == nullptr)
       slip.start(0, 0, statics.tilted().contact, std::vector<double>(n), friction.initial_states());
     else
-      slip.start(0, from->shear_m, from->contact, from->u_x_m, from->psi);
+      slip.start(0, from->shear_m, from->contact, from->u_x_m, from->law_states);
     const auto strain = [&] {
       const auto& s = slip.state();
       return solid::strain_energy_J_per_m(plate, statics.slid_to(s.contact, s.u_x_m, {}, s.shear_m).u_m);

@@ -35,7 +35,7 @@ struct LawState {
 };
 
 template <class Law>
-concept HasState = requires {
+concept HasStates = requires {
   Law::states;
 };
 

@@ -10,6 +10,7 @@
 #include "base/logarithm.hpp"
 #include "base/message.hpp"
 #include "interface/friction/parameter.hpp"
+#include "interface/friction/state_law.hpp"
 
 namespace slipfront::interface {
 
@@ -77,6 +78,7 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
   /// The law with its constants folded. An aggregate of values V.
   template <class V>
   struct Evaluator {
+    using States = std::array<V, 1>;
     V a, b, f0, V0_m_per_s, per_d_c_per_m, f_w, per_V_w_s_per_m;
     V per_a, per_b, per_V0_s_per_m;
 
@@ -110,6 +112,16 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
       }
       const V growth_per_s = V0_m_per_s * per_d_c_per_m * exp_minus((psi - f0) * per_b);
       return b * (growth_per_s - decay_per_s);
+    }
+    V coefficient(V speed_m_per_s, const States& psi) const {
+      return arsinh_coefficient(*this, speed_m_per_s, psi);
+    }
+    States steady_states(V speed_m_per_s) const { return {steady_state(speed_m_per_s)}; }
+    States rates_per_s(const States& psi, V speed_m_per_s) const {
+      return {state_rate_per_s(psi[0], speed_m_per_s)};
+    }
+    States evolved(const States& psi, V speed_m_per_s, double dt_s) const {
+      return {evolved(psi[0], speed_m_per_s, dt_s)};
     }
     /// psi after a time in which the surfaces slide at |V|: exact.
     V evolved(V psi, V speed_m_per_s, double dt_s) const {
@@ -145,11 +157,10 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     return e;
   }
 
-  /// psi before the event, where theta_i is given.
   double given_state() const { return f0 + b * std::log(V0_m_per_s * theta_i_s / d_c_m); }
   /// t before the event under p, of sliding at V_i: steadily, or with the theta_i that is given.
   double traction_before_Pa(double p_Pa) const {
-    if (theta_i_s == 0) return steady_coefficient(V_i_m_per_s) * p_Pa;
+    if (theta_i_s == 0) return evaluator().steady_coefficient(V_i_m_per_s) * p_Pa;
     const double u = given_state() / a + std::log(V_i_m_per_s / V0_m_per_s);
     return a * p_Pa * (u > 20 ? u : std::asinh(0.5 * std::exp(u)));
   }
@@ -159,22 +170,13 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     return V0_m_per_s * std::exp(y - given_state() / a) * -std::expm1(-2 * y);
   }
   /// psi where a node that slides at V_i has t and p; of steady sliding where it is open or has no t.
-  double state_before(double t_Pa, double p_Pa) const {
-    if (theta_i_s > 0) return given_state();
+  std::array<double, 1> initial(double t_Pa, double p_Pa) const {
+    if (theta_i_s > 0) return {given_state()};
     const auto law = evaluator();
-    if (!(p_Pa > 0) || t_Pa == 0) return law.steady_state(V_i_m_per_s);
-    return law.state_of(std::abs(t_Pa) / p_Pa, std::log(V_i_m_per_s / V0_m_per_s));
+    if (!(p_Pa > 0) || t_Pa == 0) return law.steady_states(V_i_m_per_s);
+    return {law.state_of(std::abs(t_Pa) / p_Pa, std::log(V_i_m_per_s / V0_m_per_s))};
   }
 
-  /// Coefficient of steady sliding, at V_i where that is faster.
-  double steady_coefficient(double speed_m_per_s) const {
-    return evaluator().steady_coefficient(std::max(speed_m_per_s, V_i_m_per_s));
-  }
-  double steady_slope_s_per_m(double speed_m_per_s) const {
-    const double V = std::max(speed_m_per_s, V_i_m_per_s), small = 1e-4 * V;
-    const auto law = evaluator();
-    return (law.steady_coefficient(V + small) - law.steady_coefficient(V - small)) / (2 * small);
-  }
   /// By how much the coefficient falls with slip behind a tip that comes at 1 m/s to an interface in steady
   /// sliding at V_i: under the aging law b/d_c; under the slip law exponentially over d_c, as linear
   /// weakening of the same fracture energy over 2 d_c.
@@ -183,10 +185,6 @@ struct RateAndState : StrongWeakening<evolution == StateEvolution::strong_weaken
     const auto law = evaluator();
     return (law.steady_state(V_i_m_per_s) - law.steady_state(1)) / (2 * d_c_m);
   }
-  /// As before the event.
-  double static_coefficient() const { return steady_coefficient(0); }
-  /// At 1 m/s.
-  double kinetic_coefficient() const { return steady_coefficient(1); }
 };
 
 using RateAndStateAging = RateAndState<StateEvolution::aging>;

@@ -5,6 +5,7 @@
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/exponential_slip_weakening.hpp"
 #include "interface/friction/rate_and_state.hpp"
+#include "interface/friction/rate_and_state_two.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "interface/friction/table.hpp"
 #include "interface/friction/velocity_weakening.hpp"
@@ -16,9 +17,9 @@ struct LawList {};
 
 /// All friction laws the case file can name; a new law is one more type in this list. The first is the
 /// default.
-using Registry =
-    LawList<SlipWeakening, SlipWeakeningHealing, ExponentialSlipWeakening, VelocityWeakening, Coulomb,
-            SlipTable, SlipRateTable, RateAndStateAging, RateAndStateSlip, RateAndStateStrong>;
+using Registry = LawList<SlipWeakening, SlipWeakeningHealing, ExponentialSlipWeakening, VelocityWeakening,
+                         Coulomb, SlipTable, SlipRateTable, RateAndStateAging, RateAndStateSlip,
+                         RateAndStateStrong, RateAndStateAgingTwo>;
 using FirstLaw = decltype([]<class First, class... Others>(LawList<First, Others...>) {
   return First{};
 }(Registry{}));
