@@ -276,7 +276,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   if (info.loads) add_loads(*info.loads, config.machine.pusher.is_there(), input::heals(config), list);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
-             fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
+             fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_m_per_s), {:.3g} m by time.end_s",
                          speed_m_per_s, speed_m_per_s * config.time.end_s));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, config.friction.name(), list);

@@ -133,7 +133,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
     print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.subcritical.peak_x_m,
           initial.critical_shear_m);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(result.config); speed_m_per_s > 0)
-    print("the upper edge moves to +x at {:.3g} m/s during the event (loading.shear_speed_over_c_L)\n",
+    print("the upper edge moves to +x at {:.3g} m/s during the event (loading.shear_speed_m_per_s)\n",
           speed_m_per_s);
   print(
       "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "

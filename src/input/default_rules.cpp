@@ -38,12 +38,15 @@ double c_S_m_per_s(const Case& config) {
 
 /// Prescribed tractions are all the load there is. In a sequence the edge hardly moves during an event.
 DefaultRule shear_speed_rule() {
-  static constexpr double between_events = 1e-9;
-  return {"loading.shear_speed_over_c_L",
-          "`1e-06`; `0` with loading.method = prestress; `1e-09` in a sequence", [](const Case& c) -> Value {
-            if (is_sequence(c)) return between_events;
-            return is_prestressed(c) ? 0.0 : Case{}.loading.shear_speed_over_c_L;
-          }};
+  constexpr double slower = 1e-3;
+  const Scale c_L = {"c_L", [](const Case& c) { return solid::longitudinal_speed_m_per_s(c.material); }};
+  auto rule = multiple_of(c_L, "loading.shear_speed_m_per_s");
+  rule.text += "; `0` with loading.method = prestress; a thousandth of it in a sequence";
+  rule.value = [share = rule.value](const Case& c) -> Value {
+    if (is_sequence(c)) return slower * std::get<double>(share(c));
+    return is_prestressed(c) ? Value(0.0) : share(c);
+  };
+  return rule;
 }
 
 DefaultRule element_size_rule(const Scale& width) {

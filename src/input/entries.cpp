@@ -478,9 +478,8 @@ void add_loading(Entries& all) {
   loading.stage = Stage::motion;
   loading.only_with = {};
   loading.add(
-      "shear_speed_over_c_L", &Loading::shear_speed_over_c_L, {0, 1, false, true},
-      "speed of the top edge to +x over the longitudinal wave speed c_L of slipfront info, in a ramp and "
-      "during the event, or of a pusher between events; "
+      "shear_speed_m_per_s", &Loading::shear_speed_m_per_s, at_least(0),
+      "speed of the top edge to +x in a ramp and during the event, or of a pusher between events; below c_L; "
       "0 holds it still, which a ramp and event.kind = spontaneous do not allow");
   loading.stage = Stage::statics;
   loading.only_with = tilted();
@@ -668,13 +667,13 @@ void add_sequence(Entries& all) {
   sequence.only_with = in_sequence();
   sequence.add(
       "end_s", &Sequence::end_s, above_or_infinite(0),
-      "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
+      "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_m_per_s");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
   sequence.add(
       "times_s", [](auto& s) -> auto& { return s.path.times_s; }, above(0),
       "times since normal loading, ascending, at which the loading has reached shears_m; none: it moves at "
-      "loading.shear_speed_over_c_L, as during each event in any case. It ends with the last one");
+      "loading.shear_speed_m_per_s, as during each event in any case. It ends with the last one");
   sequence.add(
       "shears_m", [](auto& s) -> auto& { return s.path.shears_m; }, at_least(0),
       "displacements along x of the top edge, the pusher or the machine then, none less than the one before; "

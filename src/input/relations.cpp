@@ -104,17 +104,26 @@ void check_element_size(const Case& config) {
         .about("plate.width_m", "plate.height_m");
 }
 
+void check_shear_speed(const Case& config) {
+  const double v = config.loading.shear_speed_m_per_s,
+               c_L = solid::longitudinal_speed_m_per_s(config.material);
+  if (v >= c_L)
+    throw UserError("{} is {:.12g} m/s; it must be less than c_L, {:.4g} m/s",
+                    Key("loading.shear_speed_m_per_s"), v, c_L)
+        .about("material.youngs_modulus_Pa", "material.density_kg_per_m3");
+}
+
 /// What a prescribed state, or the lack of one, asks of the other keys.
 void check_prestress(const Case& config, const Document& document) {
   const Key method("loading.method"), kind("event.kind");
   if (!is_prestressed(config)) {
     const bool is_driven = config.loading.method == statics::LoadingMethod::ramp ||
                            config.event == interface::EventKind::spontaneous;
-    if (config.loading.shear_speed_over_c_L > 0 || !is_driven) return;
+    if (config.loading.shear_speed_m_per_s > 0 || !is_driven) return;
     throw UserError(
         "{} is 0; that holds the top edge still, which a ramp or {} = spontaneous needs to move; choose a "
         "speed greater than 0",
-        Key("loading.shear_speed_over_c_L"), kind)
+        Key("loading.shear_speed_m_per_s"), kind)
         .about(method.name);
   }
   const Key t("prestress.t_Pa"), p("prestress.p_Pa");
@@ -481,6 +490,7 @@ void check_each_table(const Case& config) {
 void check_relations(const Case& config, const Document& document) {
   check_initial_state(config);
   check_each_table(config);
+  check_shear_speed(config);
   check_prestress(config, document);
   check_tilt(config);
   check_trigger_zone(config);

@@ -50,7 +50,7 @@ int suitable_threads(const input::Case& config) {
 }
 
 double top_speed_m_per_s(const input::Case& config) {
-  return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
+  return config.loading.shear_speed_m_per_s;
 }
 
 double top_speed_in_event_m_per_s(const input::Case& config) {

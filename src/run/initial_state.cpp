@@ -197,7 +197,7 @@ void require_steady_friction(const input::Case& config, const mesh::Mesh& plate)
 
 /// An event begins above the rate at which the load lets the interface slide, and below that of its fronts.
 void require_rate_of_events(const input::Case& config) {
-  const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_over_c_L");
+  const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_m_per_s");
   const double rate_m_per_s = input::inertia_slip_rate_m_per_s(config);
   const double most_m_per_s =
       std::min(input::radiation_slip_rate_m_per_s(config), input::tip_slip_rate_m_per_s(config));

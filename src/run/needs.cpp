@@ -303,8 +303,8 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
                       "an earlier end");
   if (config.loading.method == statics::LoadingMethod::ramp)
     n.ramp_steps = countable(std::ceil(critical_shear_m(config) / (top_speed_m_per_s(config) * size.step_s)),
-                             Message("the ramp with {} = {:g}", Key("loading.shear_speed_over_c_L"),
-                                     config.loading.shear_speed_over_c_L),
+                             Message("the ramp with {} = {:g} m/s", Key("loading.shear_speed_m_per_s"),
+                                     config.loading.shear_speed_m_per_s),
                              Message("a higher speed, or {} = direct", Key("loading.method")));
   n.history_rows = rows_of(end_s, output.history_interval_s, size.step_s);
   n.snapshots = static_cast<double>(snapshot_plan(config, size.step_s).times_s.size());

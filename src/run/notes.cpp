@@ -190,8 +190,8 @@ void add_sequence(const input::Case& config, Notes& notes) {
         "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: between events it is "
         "taken for static, and in them it works; are {} slow enough?",
         load_m_per_s, wave_Pa / strength_Pa,
-        config.sequence.path.times_s.empty() ? "loading.shear_speed_over_c_L"
-                                             : "sequence.times_s and loading.shear_speed_over_c_L"));
+        config.sequence.path.times_s.empty() ? "loading.shear_speed_m_per_s"
+                                             : "sequence.times_s and loading.shear_speed_m_per_s"));
   if (config.sequence.healing_per_e_fold > most_healing)
     add_note("sequence.healing_per_e_fold", config.sequence.healing_per_e_fold,
              "surfaces gain some 0.01 in mu_s an e-fold of time at rest; is it in per cent?", notes);

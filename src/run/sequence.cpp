@@ -262,7 +262,7 @@ std::vector<interface::FrictionLaw> Sequence::heal_to_critical() {
   }
   if (shear_m < end_m)
     throw UserError("{} heals the interface faster than the load grows; reduce it, or raise {}",
-                    Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_over_c_L"));
+                    Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_m_per_s"));
   return heal_until(path_.end_s());
 }
 

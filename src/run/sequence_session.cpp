@@ -180,7 +180,7 @@ UserError SequenceSession::does_not_rest(const std::string& part, const Result& 
                ? UserError(
                      "{}, and slip does not slow down: the load drives it on; choose a slower one ({}), or "
                      "press harder; {}",
-                     what, Key("loading.shear_speed_over_c_L"), what_was_kept(folder_))
+                     what, Key("loading.shear_speed_m_per_s"), what_was_kept(folder_))
                : UserError(
                      "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft "
                      "machine do; choose others ({}, {}), or a later {}; {}",

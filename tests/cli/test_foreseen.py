@@ -72,11 +72,11 @@ def random_case(seed):
         case["prestress.t_Pa"] = r.choice([0, r.uniform(-1, 1) * p, r.uniform(0, 0.6) * p])
         case["plate.sides"] = sides = r.choice(["free", "periodic", "absorbing"])
         case["plate.top"] = r.choice(["loaded", "free", "absorbing"])
-        case["loading.shear_speed_over_c_L"] = r.choice([0, power(-18, -12), power(-12, -4)])
+        case["loading.shear_speed_m_per_s"] = r.choice([0, power(-15, -9), power(-9, -1)])
     else:
         tilt = power(*r.choice([(-12, -4), (-5, -4)]))
         case |= {"loading.tilt_left_m": tilt, "loading.tilt_right_m": tilt * r.uniform(0.3, 1)}
-        case |= {"loading.shear_speed_over_c_L": power(-12, -6), "loading.edge_margin_m": 4e-3}
+        case |= {"loading.shear_speed_m_per_s": power(-9, -3), "loading.edge_margin_m": 4e-3}
     case["material.plane"] = r.choice(["stress", "strain"])
     case["material.poissons_ratio"] = r.uniform(-0.2, 0.45)
     h_over_c_s = 2e-3 / 1500

@@ -37,7 +37,7 @@ def draw(dice):
         choose("plate.top", "loaded", "free", "absorbing")
         put("prestress.p_Pa", 5e6)
         put("prestress.t_Pa", dice.uniform(-2.9e6, 2.9e6))
-        put("loading.shear_speed_over_c_L", dice.choice((0.0, 1e-6, 1e-4)))
+        put("loading.shear_speed_m_per_s", dice.choice((0.0, 1.6e-3, 0.16)))
         kind = choose("event.kind", "none", "nucleation", "nucleation", "left", "right")
     else:
         choose("loading.top_during_tilt", "held", "free")

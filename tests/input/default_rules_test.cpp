@@ -78,8 +78,8 @@ TEST(DefaultRules, PrescribedTractionsAreAllTheLoad) {
   const std::string text =
       "[plate]\ncorner = 'none'\n[loading]\nmethod = 'prestress'\n[prestress]\nt_Pa = 1\np_Pa = 1\n"
       "[event]\nkind = 'nucleation'\n";
-  EXPECT_EQ(parsed(text).loading.shear_speed_over_c_L, 0);
-  EXPECT_EQ(parsed(text, {{"loading.shear_speed_over_c_L", "1e-6"}}).loading.shear_speed_over_c_L, 1e-6);
+  EXPECT_EQ(parsed(text).loading.shear_speed_m_per_s, 0);
+  EXPECT_EQ(parsed(text, {{"loading.shear_speed_m_per_s", "1e-6"}}).loading.shear_speed_m_per_s, 1e-6);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ const std::string changed_text =
     " bottom = 'free', youngs_modulus_Pa = 6.7e10, poissons_ratio = 0.125, density_kg_per_m3 = 7.8e3,"
     " stiffness_damping_s = 3e-9}\n"
     "loading = {tilt_left_m = 1e-4, tilt_right_m = 3e-4, top_during_tilt = 'free', method = 'ramp',"
-    " solver = 'direct', shear_speed_over_c_L = 1e-5, edge_margin_m = 0.02, critical_margin = 3e-4}\n"
+    " solver = 'direct', shear_speed_m_per_s = 1e-5, edge_margin_m = 0.02, critical_margin = 3e-4}\n"
     "friction = {law = 'velocity_weakening', mu_s = 1.25, mu_k = 0.75, alpha_m2_per_s2 = 0.3,"
     " regularisation = 'strength', relaxation_length_m = 4e-6, relaxation_slip_rate_m_per_s = 0.5,"
     " relaxation_time_s = 2e-6, file = 'table.csv', between_rows = 'stepwise', random_key = 'mu_k',"
@@ -175,7 +175,7 @@ Case changed_prestress() {
   c.plate.corner = mesh::Corner::none;
   c.loading = {};
   c.loading.method = statics::LoadingMethod::prestress;
-  c.loading.shear_speed_over_c_L = 0;
+  c.loading.shear_speed_m_per_s = 0;
   c.prestress = {1e6 / 3, 2e6 / 7, "", {}, 3e8, -2e8};
   c.event = interface::EventKind::nucleation;
   c.trigger = {.ramp_s = 0, .duration_s = 3e-5};
@@ -251,7 +251,7 @@ TEST(Schema, WhatIsNotSetTogetherReadsBackFromToml) {
   fillet.plate.fillet_radius_m = 3e-3;
   pushed.machine.pusher = {0.01, 0.02};
   on_machine.machine = {2e9, 0};
-  sequence.loading.shear_speed_over_c_L = 1e-8;
+  sequence.loading.shear_speed_m_per_s = 1e-8;
   sequence.time.end_s = 1e-2;
   sequence.time.quiet_s = 1e-3;
   sequence.sequence = {7, 400, true, {{2, 3}, {1e-6, 1e-6}}, 0.02, 3, {}};
@@ -315,7 +315,7 @@ TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {
 
 TEST(Schema, DefaultsOfASequenceLetEventsComeToRestBeforeTheEdgeMovesOn) {
   const Case single = parsed(""), sequence = parsed("sequence.max_events = 2");
-  EXPECT_EQ(sequence.loading.shear_speed_over_c_L, 1e-9);
+  EXPECT_DOUBLE_EQ(sequence.loading.shear_speed_m_per_s, 1e-3 * single.loading.shear_speed_m_per_s);
   EXPECT_DOUBLE_EQ(sequence.time.end_s, 10 * single.time.end_s);
   EXPECT_DOUBLE_EQ(sequence.time.quiet_s,
                    4 * single.plate.height_m / solid::shear_speed_m_per_s(single.material));
@@ -437,6 +437,10 @@ struct Refused {
 
 constexpr Refused refused[] = {
     // Names
+    {"[loading]\nshear_speed_over_c_L = 1e-6",
+     "c.toml:2: loading.shear_speed_over_c_L is loading.shear_speed_m_per_s now, in m/s: "},
+    {"[loading]\nshear_speed_over_c_L = 1e-6",
+     "c.toml:2: loading.shear_speed_over_c_L is loading.shear_speed_m_per_s now, in m/s: "},
     {"[plate]\n\nwidht_m = 0.2", "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?"},
     {"[plate]\nwidth = 0.2", "c.toml:2: unknown key plate.width; did you mean plate.width_m?"},
     {"[friction]\nlaw = \"velocity_weakening\"\nalpha = 0.1",

@@ -67,7 +67,7 @@ CASES = {
     "rounded corners": {"plate": 'corner = "fillet"\nfillet_radius_m = 6e-3'},
     "spontaneous": {"rest": '[event]\nkind = "spontaneous"'},
     "ramp": {
-        "loading": TILT + '\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3',
+        "loading": TILT + '\nmethod = "ramp"\nshear_speed_m_per_s = 1.6',
         "rest": '[event]\nkind = "spontaneous"',
     },
     "no sub-steps": {"time": "interface_substeps = 1"},

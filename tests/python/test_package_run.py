@@ -351,7 +351,7 @@ def test_without_a_folder_results_go_with_what_was_read(tmp_path):
 BODIES = """
 event.kind = "left"
 plate = {width_m = 0.2, height_m = 0.1, element_size_m = 5e-3, corner = "none"}
-loading = {method = "prestress", shear_speed_over_c_L = 0.0}
+loading = {method = "prestress", shear_speed_m_per_s = 0.0}
 time.end_s = 1e-5
 [base]
 kind = "body"
@@ -397,7 +397,7 @@ tilt_right_m = 4e-5
 top_during_tilt = "free"
 method = "direct"
 solver = "direct"
-shear_speed_over_c_L = 2e-6
+shear_speed_m_per_s = 2e-6
 edge_margin_m = 0.011
 critical_margin = 2e-3
 [event]

@@ -39,7 +39,7 @@ input::Case column(mesh::Top top) {
              .top = top};
   c.material.stiffness_damping_s = 0;
   c.loading.method = statics::LoadingMethod::prestress;
-  c.loading.shear_speed_over_c_L = 0;
+  c.loading.shear_speed_m_per_s = 0;
   c.event = EventKind::none;
   c.time.quiet_s = std::numeric_limits<double>::infinity();
   c.output.history_interval_s = 1e-9;
@@ -66,10 +66,10 @@ TEST(PrestressColumn, TheMovingTopLoadsTheLayer) {
   auto c = column(mesh::Top::loaded);
   c.friction = interface::Coulomb { 0.5 };
   c.prestress = {0, 1e6, ""};
-  c.loading.shear_speed_over_c_L = 1e-5;
+  c.loading.shear_speed_m_per_s = 0.016;
   c.time.end_s = 120e-6;
   const auto result = run_case(c);
-  const double v = 1e-5 * result.speeds.c_L;
+  const double v = c.loading.shear_speed_m_per_s;
   const double step = c.material.density_kg_per_m3 * result.speeds.c_S * v;
   const auto& h = result.event.history;
   double sum = 0, n = 0;

@@ -48,7 +48,7 @@ def is_uniform(run: OpenRun) -> bool:
 
 def edge(run: OpenRun, table: str, key: str) -> str:
     told = str(run.entry(table, key))
-    if told == "loaded" and run.prescribed and not is_set(run, "loading", "shear_speed_over_c_L"):
+    if told == "loaded" and run.prescribed and not is_set(run, "loading", "shear_speed_m_per_s"):
         return "held"
     return words(EDGES.get(told, told))
 
@@ -142,9 +142,9 @@ def machine(run: OpenRun) -> str:
 
 def loads(run: OpenRun) -> str:
     """p and t before the event, and where they come from."""
-    speed = run.entry("loading", "shear_speed_over_c_L")
+    speed = run.entry("loading", "shear_speed_m_per_s")
     moves = (
-        f"; upper edge moves to +x at {speed * run.c_L_m_per_s:.3g} m/s" if is_number(speed) and speed else ""
+        f"; upper edge moves to +x at {quantity(speed, 'm/s', 3)}" if is_number(speed) and speed else ""
     ) + machine(run)
     if is_uniform(run):
         p, t = si(run, "prestress", "p_Pa"), si(run, "prestress", "t_Pa")
