@@ -79,11 +79,11 @@ void add_steps(const input::Case& config, const run::Info& info, Listing& list) 
                              : "the first event",
                          info.needs.slow_bytes * 1e-9));
   const auto& machine = config.machine;
-  if (std::isfinite(machine.shear_stiffness_Pa))
-    list.add("machine along x", fmt::format("{:g} Pa", machine.shear_stiffness_Pa));
-  if (std::isfinite(machine.normal_stiffness_Pa))
-    list.add("machine downwards", machine.normal_stiffness_Pa > 0
-                                      ? fmt::format("{:g} Pa", machine.normal_stiffness_Pa)
+  if (std::isfinite(machine.shear_stiffness_Pa_per_m))
+    list.add("machine along x", fmt::format("{:g} Pa/m", machine.shear_stiffness_Pa_per_m));
+  if (std::isfinite(machine.normal_stiffness_Pa_per_m))
+    list.add("machine downwards", machine.normal_stiffness_Pa_per_m > 0
+                                      ? fmt::format("{:g} Pa/m", machine.normal_stiffness_Pa_per_m)
                                       : std::string("dead load"));
   if (const auto& path = config.sequence.path; !path.times_s.empty())
     list.add("path of the loading", fmt::format("{} points, to {:g} m at {:g} s", path.times_s.size(),

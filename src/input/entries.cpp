@@ -516,12 +516,13 @@ void add_machine(Entries& all) {
   Table loading(
       all, "loading", [](auto& config) -> auto& { return config.machine; }, Stage::statics);
   loading.only_with = direct();
-  loading.add("shear_stiffness_Pa", &boundary::Machine::shear_stiffness_Pa, above_or_infinite(0),
-              "stiffness of the loading machine along x, force per metre of thickness over displacement, in "
-              "series with the top edge or the pusher; inf: rigid");
-  loading.add("normal_stiffness_Pa", &boundary::Machine::normal_stiffness_Pa, at_least_or_infinite(0),
-              "the same downwards, on the top edge once it is tilted; 0: a dead load, inf: the edge stays at "
-              "its height");
+  loading.add("shear_stiffness_Pa_per_m", &boundary::Machine::shear_stiffness_Pa_per_m, above_or_infinite(0),
+              "stiffness of the loading machine along x, in series with the top edge or the pusher: mean "
+              "stress on that edge, or under the pusher, per metre of the machine's motion; inf: rigid");
+  loading.add(
+      "normal_stiffness_Pa_per_m", &boundary::Machine::normal_stiffness_Pa_per_m, at_least_or_infinite(0),
+      "the same downwards, mean stress on the top edge, once that is tilted; 0: a dead load, inf: the "
+      "edge stays at its height");
 }
 
 void add_prestress(Entries& all) {
@@ -804,9 +805,9 @@ std::string describe(const Range& range, const std::string& unit) {
 
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
-      {"m", 1e-12, 1e6},      {"s", 1e-15, 1e12},    {"Pa", 1e-6, 1e15},
-      {"kg/m3", 1e-6, 1e6},   {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6},
-      {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},  {"", 1e-18, 1e9}};
+      {"m", 1e-12, 1e6},     {"s", 1e-15, 1e12},  {"Pa", 1e-6, 1e15},     {"kg/m3", 1e-6, 1e6},
+      {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6}, {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},
+      {"Pa/m", 1e-6, 1e24},  {"", 1e-18, 1e9}};
   return all;
 }
 

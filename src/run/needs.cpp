@@ -200,7 +200,8 @@ double slow_steps_of(const input::Case& config) {
   constexpr double of_changes = 2e3;  // of an event
   const LoadingPath path(config);
   double compliance_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material) +
-                               config.plate.width_m / config.machine.shear_stiffness_Pa;
+                               config.plate.width_m / (config.machine.shear_stiffness_Pa_per_m *
+                                                       config.machine.moved_length_m(config.plate.width_m));
   if (input::has_base_body(config))
     compliance_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(input::base_material(config));
   const double p_Pa = input::nominal_pressure_Pa(config);

@@ -253,7 +253,7 @@ void add_stiff_machine(const input::Case& config, Notes& notes) {
   double yields_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material);
   if (has_base_body(config))
     yields_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(input::base_material(config));
-  yields_m_per_Pa += config.plate.width_m / machine.shear_stiffness_Pa;
+  yields_m_per_Pa += 1 / machine.shear_stiffness_Pa_per_m;
   const double ratio = 1 / (yields_m_per_Pa * critical_Pa_per_m);
   if (critical_Pa_per_m > 0 && ratio > 1)
     notes.push_back(

@@ -197,8 +197,9 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
         "lower {} or a larger {}",
         at, acts_m, Key("plate.height_m"), Key("plate.width_m"));
   const double most_m = std::max(plate.width_m, plate.height_m);
-  const double edge_m =
-      shear_m - rest_.shear_m - rest_.moved_m - shear_force / config_.machine.shear_stiffness_Pa;
+  const double stiffness_Pa =
+      config_.machine.shear_stiffness_Pa_per_m * config_.machine.moved_length_m(plate.width_m);
+  const double edge_m = shear_m - rest_.shear_m - rest_.moved_m - shear_force / stiffness_Pa;
   if (std::isinf(path_.end_s()) && !(edge_m <= most_m))
     throw UserError(
         "{} no event has begun, and the loaded edge has moved by more than the plate's size, {:g} m: "
@@ -377,7 +378,8 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
           "{:.6g} s after normal loading the interface slips steadily, at {:.3g} m/s: no event comes; give "
           "{}, or "
           "a softer machine ({})",
-          state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"), Key("loading.shear_stiffness_Pa"));
+          state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"),
+          Key("loading.shear_stiffness_Pa_per_m"));
     if ((slow_->n_steps() - n_before) % record::steps_per_slow_row == 0 &&
         (n_rows < record::all_slow_rows || has_changed()))
       give_row();

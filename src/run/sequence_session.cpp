@@ -184,7 +184,7 @@ UserError SequenceSession::does_not_rest(const std::string& part, const Result& 
                : UserError(
                      "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft "
                      "machine do; choose others ({}, {}), or a later {}; {}",
-                     what, Key("loading.shear_stiffness_Pa"), Key("loading.normal_stiffness_Pa"),
+                     what, Key("loading.shear_stiffness_Pa_per_m"), Key("loading.normal_stiffness_Pa_per_m"),
                      Key("time.end_s"), what_was_kept(folder_));
   return UserError("{}; choose a later {}, a larger {}, or edges that absorb; {}", what, Key("time.end_s"),
                    Key("material.stiffness_damping_s"), what_was_kept(folder_));

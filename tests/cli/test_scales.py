@@ -170,7 +170,7 @@ def test_a_machine_too_stiff_for_events_is_told(program, write_case):
     note = "block and machine have 1.25 times the critical stiffness (b - a) p/d_c"
     assert note in notes_of(program, case, f"friction.d_c_m={1.25 * stiff_m}")
     assert "critical stiffness" not in notes_of(program, case, f"friction.d_c_m={0.8 * stiff_m}")
-    yielding = (f"friction.d_c_m={1.25 * stiff_m}", "loading.shear_stiffness_Pa=1e9")
+    yielding = (f"friction.d_c_m={1.25 * stiff_m}", "loading.shear_stiffness_Pa_per_m=1e10")
     assert "critical stiffness" not in notes_of(program, case, *yielding)
 
 

@@ -260,7 +260,7 @@ TEST(Schema, WhatIsNotSetTogetherReadsBackFromToml) {
   slow.sequence = {7, 400, true, {}, 0, 1, 2e-3};
   for (const Case& c : {relief, fillet, pushed, on_machine, sequence, slow})
     expect_equal(parsed(to_toml(c)), c);
-  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").machine.is_rigid());
+  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa_per_m = inf").machine.is_rigid());
 }
 
 TEST(Schema, LoadingPathsRiseInTime) {
@@ -300,11 +300,12 @@ TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
 }
 
 TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {
-  const std::string soft = "loading.shear_stiffness_Pa = 1e9\n", dead = "loading.normal_stiffness_Pa = 0\n";
-  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa = 0"), HasSubstr("greater than 0"));
-  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa = -1"), HasSubstr("at least 0"));
-  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa = 1e14"), HasSubstr("for a rigid machine"));
-  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa = 1e14"), HasSubstr("for a rigid machine"));
+  const std::string soft = "loading.shear_stiffness_Pa_per_m = 1e9\n",
+                    dead = "loading.normal_stiffness_Pa_per_m = 0\n";
+  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa_per_m = 0"), HasSubstr("greater than 0"));
+  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa_per_m = -1"), HasSubstr("at least 0"));
+  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa_per_m = 1e14"), HasSubstr("for a rigid machine"));
+  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa_per_m = 1e14"), HasSubstr("for a rigid machine"));
   for (const auto& machine : {soft, dead}) {
     EXPECT_THAT(parse_error(machine + "loading.solver = 'iterative'"), HasSubstr("loading.solver = direct"));
     EXPECT_THAT(parse_error(machine + "time.precision = 'single'"), HasSubstr("time.precision = double"));
@@ -565,7 +566,7 @@ TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesAndRigidMachinesInfinite) {
     if (parse_error(entry.key + " = inf") == "(nothing thrown)") may_be_infinite.push_back(entry.key);
   }
   EXPECT_EQ(may_be_infinite,
-            (std::vector<std::string>{"loading.shear_stiffness_Pa", "loading.normal_stiffness_Pa",
+            (std::vector<std::string>{"loading.shear_stiffness_Pa_per_m", "loading.normal_stiffness_Pa_per_m",
                                       "time.quiet_s", "output.snapshot_interval_s"}));
 }
 

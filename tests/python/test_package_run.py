@@ -539,8 +539,8 @@ healing_time_s = 2.0
 [loading]
 pusher_from_m = 8e-3
 pusher_to_m = 16e-3
-shear_stiffness_Pa = 1e9
-normal_stiffness_Pa = 0.0
+shear_stiffness_Pa_per_m = 1.25e11
+normal_stiffness_Pa_per_m = 0.0
 """,
     "slow slip": """
 plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3}

@@ -68,7 +68,7 @@ input::Case pushed_block(int max_events) {
   test::law(config).mu_s = 0.7;
   config.plate.corner = mesh::Corner::none;
   config.loading.mean_pressure_Pa = 5e6;
-  config.machine = {2e9, 0, {8e-3, 16e-3}};
+  config.machine = {2.5e11, 0, {8e-3, 16e-3}};
   return config;
 }
 
@@ -299,7 +299,7 @@ TEST(Sequence, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
 
 TEST(Sequence, OnAMachineAboveKeepsItsBooks) {
   auto config = pushed_block(4);
-  config.machine = {1e10, 2e10};
+  config.machine = {5e10, 1e11};
   Sequence sequence(config, test::go_on);
   run_all(sequence, config);
   const auto& rows = sequence.loading();

@@ -131,9 +131,9 @@ def machine(run: OpenRun) -> str:
     times_s, shears_m = (run.entry("sequence", name) for name in ("times_s", "shears_m"))
     parts = []
     if is_number(along_x) and math.isfinite(along_x):
-        parts.append(f"machine of stiffness {quantity(along_x, 'Pa')} along x")
+        parts.append(f"machine of stiffness {quantity(along_x, 'Pa/m')} along x")
     if is_number(down) and math.isfinite(down):
-        parts.append(f"stiffness {quantity(down, 'Pa')} downwards" if down else "dead load")
+        parts.append(f"stiffness {quantity(down, 'Pa/m')} downwards" if down else "dead load")
     if isinstance(times_s, list) and isinstance(shears_m, list) and times_s and shears_m:
         end = f"{quantity(shears_m[-1], 'm')} at {quantity(times_s[-1], 's')}"
         parts.append(f"loaded along a path of {len(times_s)} points to {end}")
