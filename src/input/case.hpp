@@ -180,6 +180,11 @@ inline bool has_growing_tractions(const Case& config) {
 inline bool is_pushed_at_edge(const Case& config) {
   return interface::is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
 }
+/// The key of Trigger::amount under such a trigger.
+inline const char* trigger_key(const Case& config) {
+  return config.trigger.form == interface::TriggerForm::raised ? "event.trigger_over_strength"
+                                                               : "event.trigger_over_missing";
+}
 /// Whether it starts by one added over a patch.
 inline bool is_overstressed(const Case& config) {
   return config.event == interface::EventKind::nucleation &&

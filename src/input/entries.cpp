@@ -338,6 +338,10 @@ Condition pushed() {
       Message("{} = left or right and {} = added or raised", Key("event.kind"), Key("event.trigger_form")),
       is_pushed_at_edge};
 }
+Condition pushed_in_form(TriggerForm form, const char* word) {
+  return {Message("{} = left or right and {} = {}", Key("event.kind"), Key("event.trigger_form"), word),
+          [form](const Case& c) { return is_at_edge(c.event) && c.trigger.form == form; }};
+}
 Condition started_by_force() {
   return {Message("{}, or {}", pushed().setting, overstressed().setting), starts_by_force};
 }
@@ -611,14 +615,16 @@ void add_event(Entries& all) {
   trigger.word(
       "trigger_form", &Trigger::form,
       {{"added", TriggerForm::added}, {"raised", TriggerForm::raised}, {"weakened", TriggerForm::weakened}},
-      "tangential traction added, or raised to a multiple of mu_s p_s, in the direction in which the zone is "
-      "loaded, or mu = mu_k from the start");
+      "tangential traction added, a multiple of what is missing to the strength, or raised to a multiple of "
+      "the strength, both in the direction in which the zone is loaded; or mu = mu_k from the start");
   trigger.add("trigger_zone_m", &Trigger::zone_m, above(0),
               "length of the trigger zone, inward from the outermost node in contact");
-  trigger.only_with = pushed();
-  trigger.add(
-      "trigger_amount", &Trigger::amount, at_least(0),
-      "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s");
+  trigger.only_with = pushed_in_form(TriggerForm::added, "added");
+  trigger.add("trigger_over_missing", &Trigger::amount, at_least(0),
+              "the added traction over what is missing to the strength, mu_s p_s - t_s: 1 just reaches it");
+  trigger.only_with = pushed_in_form(TriggerForm::raised, "raised");
+  trigger.add("trigger_over_strength", &Trigger::amount, at_least(0),
+              "the traction to which t_s is raised over the strength, mu_s p_s: 1 just reaches it");
   trigger.only_with = started_by_force();
   trigger.add("trigger_ramp_s", &Trigger::ramp_s, at_least(0), "time over which the trigger rises");
   trigger.word(

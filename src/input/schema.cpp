@@ -250,13 +250,15 @@ struct RenamedKey {
   const char* key;
   const char* how;  ///< its number follows from the old one
 };
-constexpr std::array<RenamedKey, 3> renamed_keys = {
+constexpr std::array<RenamedKey, 4> renamed_keys = {
     {{"loading.shear_speed_over_c_L", "loading.shear_speed_m_per_s",
       "in m/s: the number times c_L, which slipfront info tells"},
      {"loading.shear_stiffness_Pa", "loading.shear_stiffness_Pa_per_m",
       "stress per metre: the number over plate.width_m, or over the pusher's length"},
      {"loading.normal_stiffness_Pa", "loading.normal_stiffness_Pa_per_m",
-      "stress per metre: the number over plate.width_m"}}};
+      "stress per metre: the number over plate.width_m"},
+     {"event.trigger_amount", "event.trigger_over_missing",
+      "with event.trigger_form = raised event.trigger_over_strength; the number stays"}}};
 
 void refuse_renamed(const std::string& place, const std::string& key) {
   for (const auto& [old_key, now, how] : renamed_keys)

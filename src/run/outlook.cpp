@@ -142,8 +142,8 @@ std::string doubt_of_beginning(const input::Case& config, const Inside& inside) 
     return fmt::format("event.kind = none, and {} is below {} at all nodes inside", inside.t(),
                        inside.strength());
   if (input::is_pushed_at_edge(config) && config.trigger.amount < 1)
-    return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below {}",
-                       config.trigger.amount, inside.strength());
+    return fmt::format("{} = {:g} leaves the traction of the trigger zone below {}; 1 just reaches it",
+                       input::trigger_key(config), config.trigger.amount, inside.strength());
   return input::is_overstressed(config) ? doubt_of_overstress(config, inside) : std::string();
 }
 

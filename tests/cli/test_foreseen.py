@@ -18,10 +18,10 @@ def test_a_history_too_large_for_the_disk_is_refused(program, coarse, tmp_path):
 
 
 def test_overload_is_not_blamed_on_the_step(program, coarse):
-    trigger = settings({"event.kind": "right", "event.trigger_amount": 1e6})
+    trigger = settings({"event.kind": "right", "event.trigger_over_missing": 1e6})
     message = one_line(program("run", coarse, "-o", "out", "-q", *trigger), 3)
     assert "the work of the loads accounts for the energy" in message
-    assert "event.trigger_amount" in message and "step_factor" not in message
+    assert "event.trigger_over_missing" in message and "step_factor" not in message
 
 
 PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": "none"}
@@ -100,7 +100,7 @@ def random_case(seed):
         kinds.append("spontaneous")
     case["event.kind"] = kind = r.choice(kinds)
     if kind in ("left", "right"):
-        case |= {"event.trigger_zone_m": r.choice([2e-3, 8e-3]), "event.trigger_amount": r.uniform(0, 5)}
+        case |= {"event.trigger_zone_m": r.choice([2e-3, 8e-3]), "event.trigger_over_missing": r.uniform(0, 5)}
         case["event.trigger_ramp_s"] = r.choice([0, 5, 50]) * h_over_c_s
     if kind == "nucleation":
         case["nucleation.form"] = r.choice(["weakened", "overstress"])

@@ -75,7 +75,7 @@ def draw(dice):
         put("nucleation.half_length_m", dice.uniform(5e-3, 2e-2))
         put("nucleation.overstress_Pa", dice.uniform(-4e6, 4e6))
     if kind in ("left", "right"):
-        put("event.trigger_amount", dice.uniform(0.5, 6))
+        put("event.trigger_over_missing", dice.uniform(0.5, 6))
     if kind not in ("none", "spontaneous") and dice.random() < 0.3:
         put("event.trigger_duration_s", dice.uniform(5e-6, 5e-5))
     put("time.step_factor", dice.uniform(0.3, 0.95))

@@ -121,7 +121,7 @@ const std::string changed_text =
     " relaxation_time_s = 2e-6, file = 'table.csv', between_rows = 'stepwise', random_key = 'mu_k',"
     " random_share = 0.05, random_correlation_length_m = 6e-3, random_seed = 7}\n"
     "contact.algorithm = 'predictor_corrector'\n"
-    "event = {kind = 'right', trigger_form = 'raised', trigger_zone_m = 7e-3, trigger_amount = 2.5,"
+    "event = {kind = 'right', trigger_form = 'raised', trigger_zone_m = 7e-3, trigger_over_strength = 2.5,"
     " trigger_ramp = 'smooth', trigger_ramp_s = 0, trigger_duration_s = 3e-5}\n"
     "time = {step_factor = 1.5, allow_unstable = true, stepper = 'plain', precision = 'single', "
     "interface_rows = 7,"
@@ -393,16 +393,25 @@ TEST(Schema, ABodyBelowHasItsKeys) {
   EXPECT_TRUE(members(rigid.base) == members(expected));
 }
 
+TEST(Schema, TheFormOfATriggerDecidesWhatItsAmountIsOver) {
+  const std::string at_left = "[event]\nkind = \"left\"\n", raised = at_left + "trigger_form = \"raised\"\n";
+  EXPECT_EQ(parsed(at_left + "trigger_over_missing = 7\n").trigger.amount, 7);
+  EXPECT_EQ(parsed(raised + "trigger_over_strength = 7\n").trigger.amount, 7);
+  expect_message(parse_error(raised + "trigger_over_missing = 7\n"),
+                 "c.toml:4: event.trigger_over_missing applies only with", "event.trigger_form = added");
+  expect_message(parse_error(at_left + "trigger_amount = 7\n"),
+                 "c.toml:3: event.trigger_amount is event.trigger_over_missing now", "trigger_over_strength");
+}
+
 TEST(Schema, AWeakenedTriggerHasNoAmount) {
-  const std::string pushed = "[event]\nkind = \"left\"\ntrigger_amount = 7\n";
-  std::vector<Override> overrides = {{"event.trigger_form", "raised"}};
-  EXPECT_EQ(parsed(pushed, overrides).trigger.amount, 7);
-  overrides[0].second = "weakened";
+  const std::string pushed = "[event]\nkind = \"left\"\ntrigger_over_missing = 7\n";
+  EXPECT_EQ(parsed(pushed).trigger.amount, 7);
+  std::vector<Override> overrides = {{"event.trigger_form", "weakened"}};
   EXPECT_EQ(parsed(pushed, overrides).trigger.form, interface::TriggerForm::weakened);
   EXPECT_EQ(parsed(pushed, overrides).trigger.amount, interface::Trigger{}.amount);
-  overrides.push_back({"event.trigger_amount", "3"});
+  overrides.push_back({"event.trigger_over_missing", "3"});
   expect_message(parse_error(pushed, overrides),
-                 "--set event.trigger_amount=3: event.trigger_amount applies only with");
+                 "--set event.trigger_over_missing=3: event.trigger_over_missing applies only with");
 }
 
 TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
@@ -501,8 +510,8 @@ constexpr Refused refused[] = {
      "loading.method = direct or ramp"},
     {"[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\nfile = \"a.csv\"\n",
      "c.toml:4: prestress.t_Pa applies only with"},
-    {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n",
-     "c.toml:4: event.trigger_amount", "event.trigger_form = added or raised"},
+    {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_over_missing = 5\n",
+     "c.toml:4: event.trigger_over_missing", "event.trigger_form = added"},
     {"[event]\ntrigger_zone_m = 1e-2\n",
      "c.toml:2: event.trigger_zone_m applies only with event.kind = left"},
     {"[event]\nkind = \"nucleation\"\ntrigger_ramp_s = 0\n", "c.toml:3: event.trigger_ramp_s",

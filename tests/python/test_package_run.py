@@ -404,7 +404,7 @@ critical_margin = 2e-3
 kind = "right"
 trigger_form = "raised"
 trigger_zone_m = 0.02
-trigger_amount = 2.0
+trigger_over_strength = 2.0
 trigger_ramp_s = 4e-6
 trigger_duration_s = 2e-5
 [time]

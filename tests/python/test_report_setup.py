@@ -25,7 +25,7 @@ title = "polycarbonate on Homalite"
 plate = {width_m = 0.15, height_m = 0.06, element_size_m = 3e-3, corner = "none"}
 loading.method = "prestress"
 prestress = {t_Pa = 2.4e6, p_Pa = 4e6}
-event = {kind = "left", trigger_zone_m = 30e-3, trigger_amount = 2, trigger_ramp_s = 2e-6}
+event = {kind = "left", trigger_zone_m = 30e-3, trigger_over_missing = 2, trigger_ramp_s = 2e-6}
 time.end_s = 100e-6
 output.snapshot_times_s = [0.0, 50e-6]
 probes = {x_m = [0.075, 0.0765], y_m = [0.0, -0.0015], names = ["interface", "base"]}
@@ -270,7 +270,7 @@ def test_the_critical_crack_is_that_of_info(pair):
     [
         ({"kind": "spontaneous"}, "spontaneous: the shear just exceeds the critical one"),
         ({"trigger_form": "weakened"}, "30 mm at the left edge: μ = μ<sub>k</sub> from the start"),
-        ({"trigger_form": "raised", "trigger_amount": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
+        ({"trigger_form": "raised", "trigger_over_strength": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
         ({"kind": "nucleation"}, "patch around x = 75 mm, 7.5 mm to each side and a taper of 3.75 mm"),
     ],
 )

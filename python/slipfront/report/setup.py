@@ -259,7 +259,10 @@ def rise(run: OpenRun) -> str:
 
 def start(run: OpenRun) -> str:
     """What starts the event: form, zone, amount."""
-    amount = f"{run.entry('event', 'trigger_amount')}"
+
+    def amount(over: str) -> str:
+        return str(run.entry("event", f"trigger_over_{over}"))
+
     match run.kind, run.entry("event", "trigger_form"):
         case "none", _:
             return "nothing but the loads"
@@ -269,8 +272,8 @@ def start(run: OpenRun) -> str:
             return "spontaneous: the shear just exceeds the critical one"
         case ("left" | "right") as side, form:
             forms = {
-                "added": f"shear added, {amount} times what is missing to {MU_S}p{rise(run)}",
-                "raised": f"shear raised to {amount} {MU_S}p{rise(run)}",
+                "added": f"shear added, {amount('missing')} times what is missing to {MU_S}p{rise(run)}",
+                "raised": f"shear raised to {amount('strength')} {MU_S}p{rise(run)}",
                 "weakened": f"μ = {MU_K} from the start",
             }
             zone = si(run, "event", "trigger_zone_m")
