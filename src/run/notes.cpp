@@ -75,6 +75,18 @@ void add_odd_units(const NamedMaterial& body, double width_m, Notes& notes) {
                     table, m.stiffness_damping_s, damping_length_m, width_m));
 }
 
+/// Sizes that no laboratory sample has, and no fault.
+void add_odd_sizes(const input::Case& config, Notes& notes) {
+  constexpr double largest_sample_m = 20, smallest_fault_m = 1000;
+  const auto add = [&](const char* key, double size_m) {
+    if (size_m > largest_sample_m && size_m < smallest_fault_m)
+      add_note(key, size_m, "beyond samples of a laboratory, below faults; is it in m?", notes);
+  };
+  add("plate.width_m", config.plate.width_m);
+  add("plate.height_m", config.plate.height_m);
+  if (has_base_body(config)) add("base.height_m", config.base.plate.height_m);
+}
+
 /// Numbers of the interface that may be in another unit than the key's.
 void add_odd_units_of_friction(const input::Case& config, Notes& notes) {
   for (const auto& parameter : description_of(config.friction).parameters) {
@@ -338,6 +350,7 @@ std::vector<std::string> notes_of_case(const input::Case& config, const RuptureO
     notes.push_back(fmt::format("fronts.l_star_m = {:.4g} m is below the element size: one element is used",
                                 config.fronts.l_star_m));
   for (const auto& body : materials_of(config)) add_odd_units(body, config.plate.width_m, notes);
+  add_odd_sizes(config, notes);
   add_odd_units_of_friction(config, notes);
   add_odd_pressures(config, notes);
   add_lengths(config, notes);
