@@ -257,9 +257,43 @@ def resume(
     return opened(folder)
 
 
+Law = Callable[[np.ndarray, np.ndarray], ArrayLike]
+
+
+def checked_at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray) -> np.ndarray:
+    """What a function of a law gives, a value for each node."""
+    values = array(given, name)
+    if len(values) not in (1, len(like)):
+        raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
+    if not (np.isfinite(values) & (values >= least)).all():
+        raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
+    return np.ascontiguousarray(np.broadcast_to(values, like.shape))
+
+
+def checked_mu(mu: Law) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """The function, with what it gives checked."""
+    if not callable(mu):
+        raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
+
+    def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
+        return checked_at_nodes(mu(speed_m_per_s, slip_m), "mu", 0, slip_m)
+
+    return of_arrays
+
+
+def coefficient_at_rest(mu: Law) -> float:
+    return float(np.ravel(mu(np.zeros(1), np.zeros(1)))[0])
+
+
+def checked_law(mu: Law) -> tuple[Callable[[np.ndarray, np.ndarray], np.ndarray], float]:
+    """The function of an Interface, checked, and its coefficient at rest."""
+    of_arrays = checked_mu(mu)
+    return of_arrays, coefficient_at_rest(of_arrays)
+
+
 def run_with_law(
     case: CaseLike,
-    mu: Callable[[np.ndarray, np.ndarray], ArrayLike],
+    mu: Law,
     changes: Mapping[str, Any] | None = None,
     /,
     *,
@@ -283,26 +317,14 @@ def run_with_law(
     returned object. Raises what `mu` raises, CaseError where it gives no number or one below 0, and as `run`
     does."""
     prepared = make_case(case, changes, tables)
-    if not callable(mu):
-        raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
-
-    def at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray) -> np.ndarray:
-        values = array(given, name)
-        if len(values) not in (1, len(like)):
-            raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
-        if not (np.isfinite(values) & (values >= least)).all():
-            raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
-        return np.ascontiguousarray(np.broadcast_to(values, like.shape))
-
-    def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
-        return at_nodes(mu(speed_m_per_s, slip_m), "mu", 0, slip_m)
+    of_arrays = checked_mu(mu)
 
     def after(dt_s: float, speed_m_per_s: np.ndarray, psi: np.ndarray) -> list[np.ndarray]:
         assert evolve is not None
-        return [at_nodes(evolve(dt_s, speed_m_per_s, psi), "evolve", -math.inf, psi)]
+        return [checked_at_nodes(evolve(dt_s, speed_m_per_s, psi), "evolve", -math.inf, psi)]
 
     if evolve is None:
-        at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
+        at_rest = coefficient_at_rest(of_arrays)
         expected = prepared.static_coefficient
         if not math.isclose(at_rest, expected, rel_tol=1e-12):
             raise CaseError(

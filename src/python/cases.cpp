@@ -21,6 +21,7 @@
 #include "interface/friction.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/laws.hpp"
 #include "python/observers.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
@@ -137,7 +138,7 @@ void fill(std::span<double> to, const nb::object& given, const char* name) {
 }
 
 /// Functions of Python as a law with states.
-interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& evolve) {
+interface::StateArrayLaw state_law_of(const nb::callable& mu_of, const nb::callable& evolve) {
   using States = interface::StateArrayLaw::States;
   const auto list_of = [](const States& states) {
     nb::list list;
@@ -156,7 +157,8 @@ interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& e
       }};
 }
 
-/// A function of Python as a law over arrays. It is called without Python's lock.
+}  // namespace
+
 interface::ArrayLaw law_of(const nb::callable& mu_of) {
   return
       [&mu_of](std::span<const double> speed_m_per_s, std::span<const double> slip_m, std::span<double> mu) {
@@ -164,6 +166,8 @@ interface::ArrayLaw law_of(const nb::callable& mu_of) {
         fill(mu, mu_of(copied(speed_m_per_s), copied(slip_m)), "mu");
       };
 }
+
+namespace {
 
 /// The event by a law in Python. One thread: all of them would wait for Python's lock.
 void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::callable& mu_of,
@@ -180,7 +184,7 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
     throw UserError("{} = {} has a state, which mu alone does not change; give evolve", law,
                     config.friction.name());
   if (evolve)
-    config.friction.set_function(law_of(mu_of, *evolve));
+    config.friction.set_function(state_law_of(mu_of, *evolve));
   else
     config.friction.set_function(law_of(mu_of));
   run_config(given, config, dir, false, 1, infinity, std::move(progress));
