@@ -84,7 +84,8 @@ def farthest(run: slipfront.OpenRun, at_x_m: float, predicted_m: float) -> float
 
 
 def precursors(name: str, changes: dict[str, Any], folder: Path) -> Precursors:
-    sequence = sequence_of(PUSHED, {"loading.normal_stiffness_Pa_per_m": 0.0} | changes, folder)
+    loading = {"loading.normal_stiffness_Pa_per_m": 0.0, "loading.critical_margin": 0.005}
+    sequence = sequence_of(PUSHED, loading | changes, folder)
     events = sequence.events
     counted = ((events.max_slip_m > LEAST_SLIP_M) & (events.is_global == 0)).to_numpy()
     over = (events.length_m / events.nucleation_length_m).to_numpy()

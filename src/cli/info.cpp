@@ -13,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/words.hpp"
 #include "files/text.hpp"
 #include "fracture/prediction.hpp"
 #include "run/choices.hpp"
@@ -268,6 +269,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   const auto info = given.placing_errors([&] { return run::info(config, n_processes); });
   Listing list;
   if (!config.title.empty()) list.add("title", files::one_line(config.title));
+  list.add("set-up", set_up(config));
   add_wave_speeds(info, list);
   add_size(info, list);
   add_steps(config, info, list);
@@ -276,8 +278,9 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   if (info.loads) add_loads(*info.loads, config.machine.pusher.is_there(), input::heals(config), list);
   if (const double speed_m_per_s = run::top_speed_in_event_m_per_s(config); speed_m_per_s > 0)
     list.add("upper edge during the event",
-             fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_m_per_s), {:.3g} m by time.end_s",
-                         speed_m_per_s, speed_m_per_s * config.time.end_s));
+             fmt::format("moves to +x at {} (loading.shear_speed_m_per_s), {} by time.end_s",
+                         engineering(speed_m_per_s, "m/s", 3),
+                         engineering(speed_m_per_s * config.time.end_s, "m", 3)));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, config.friction.name(), list);
   if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);

@@ -133,9 +133,9 @@ def test_the_upper_edge_moves_during_the_event_unless_it_is_held(program, case, 
     held = sets("loading.shear_speed_m_per_s=0")
     for settings, moves in (((), True), (held, False)):
         info = require_done(program("info", case, *settings)).stdout
-        assert bool(re.search(r"upper edge during the event +moves to \+x at 0\.00158 m/s", info)) == moves
+        assert bool(re.search(r"upper edge during the event +moves to \+x at 1\.58 mm/s", info)) == moves
         run = require_done(program("run", case, "-o", f"{moves}", *settings)).stdout
-        assert ("the upper edge moves to +x at 0.00158 m/s during the event" in run) == moves
+        assert ("the upper edge moves to +x at 1.58 mm/s during the event" in run) == moves
         table = np.genfromtxt(tmp_path / f"{moves}/energy.csv", delimiter=",", names=True, comments="#")
         assert bool(table["top_work_J_per_m"][-1]) == moves
 

@@ -338,7 +338,7 @@ def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
     (tmp_path / "cases/table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.3e6,5e6\n")
     write_case(PRESTRESSED, "cases/c.toml")
     run = require_done(program("run", "cases/c.toml", "-o", "out"))
-    assert "prescribed tractions, t/p up to 0.4596 at x = 0.099 m" in run.stdout
+    assert "prescribed tractions, t/p up to 0.4596 at x = 99 mm" in run.stdout
     static = rows_of(tmp_path / "out/static.csv")
     assert len(static) == 100
     assert float(static[50]["t_s_Pa"]) == pytest.approx(2.2e6, rel=1e-12)
