@@ -174,9 +174,13 @@ STUDIES = (
         "top edge held or free along x while it is tilted",
         tuple((word, math.nan, {"loading.top_during_tilt": word}) for word in ("held", "free")),
     ),
-    Values("left_amount", "event.trigger_over_missing", "strength of the trigger", (5, 10, 20, 40, 80), ("left",)),
+    Values(
+        "left_amount", "event.trigger_over_missing", "strength of the trigger", (5, 10, 20, 40, 80), ("left",)
+    ),
     # The pressure has its peak at the right edge: more than 20 tears it off the plane.
-    Values("right_amount", "event.trigger_over_missing", "strength of the trigger", (2, 5, 10, 20), ("right",)),
+    Values(
+        "right_amount", "event.trigger_over_missing", "strength of the trigger", (2, 5, 10, 20), ("right",)
+    ),
     Values(
         "trigger_zone",
         "event.trigger_zone_m",

@@ -238,7 +238,7 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
   print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal,
         strongest.n_events + (is_of_event(strongest.phase) ? 0 : 1));
   print("ended: {}\n", finished.end);
-  if (std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
+  if (!events.empty() && std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
     print("{} of them longer than the nucleation length, or global\n",
           std::ranges::count_if(events, record::has_nucleated));
   print_note_on_margin(config, events);

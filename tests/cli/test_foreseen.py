@@ -100,7 +100,10 @@ def random_case(seed):
         kinds.append("spontaneous")
     case["event.kind"] = kind = r.choice(kinds)
     if kind in ("left", "right"):
-        case |= {"event.trigger_zone_m": r.choice([2e-3, 8e-3]), "event.trigger_over_missing": r.uniform(0, 5)}
+        case |= {
+            "event.trigger_zone_m": r.choice([2e-3, 8e-3]),
+            "event.trigger_over_missing": r.uniform(0, 5),
+        }
         case["event.trigger_ramp_s"] = r.choice([0, 5, 50]) * h_over_c_s
     if kind == "nucleation":
         case["nucleation.form"] = r.choice(["weakened", "overstress"])

@@ -80,7 +80,11 @@ LATE = [
         None,
         ["event.trigger_over_strength = 0.001 adds no traction", "choose more than"],
     ),
-    ('mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\n', "event.trigger_over_strength=1e-3", []),
+    (
+        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\n',
+        "event.trigger_over_strength=1e-3",
+        [],
+    ),
     # At this strength slip spreads from the edges before t/p inside reaches it.
     ("mu_s = 100 # here\n[loading]\nedge_margin_m = 5e-3\n", None, ["mu_s"]),
     # The peak t/p of the tilted plate is about 0.5.

@@ -97,7 +97,9 @@ def test_slip_that_stays_where_it_is_triggered_has_no_speed(program, write_case)
     told = r"median speed (\S+) m/s \((\S+) c_L, (\S+) c_S\)"
     v, c_L, c_S = map(float, re.search(r"\nfront 0: .*, " + told, printed).groups())
     assert (v / c_L, v / c_S) == pytest.approx((1584.4, 889.2), rel=0.02)
-    assert re.match(r"a (crack|pulse|front) ran from x = .* mm to .* mm, .*, at .* m/s \(.* Gamma = ", printed)
+    assert re.match(
+        r"a (crack|pulse|front) ran from x = .* mm to .* mm, .*, at .* m/s \(.* Gamma = ", printed
+    )
 
 
 def test_what_info_tells_of_a_rupture(program, write_case):

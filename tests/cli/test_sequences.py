@@ -89,7 +89,9 @@ def test_a_load_without_end_that_brings_steady_sliding_ends(program, write_case)
 
 
 def test_an_event_that_dead_loads_drive_on_is_told_from_one_that_needs_time(program, write_case):
-    dead = sets("loading.shear_stiffness_Pa_per_m=5e3", "loading.shear_speed_m_per_s=1.6e-6", "time.end_s=2e-3")
+    dead = sets(
+        "loading.shear_stiffness_Pa_per_m=5e3", "loading.shear_speed_m_per_s=1.6e-6", "time.end_s=2e-3"
+    )
     line = refusal(program("run", write_case(STICKING), *dead, "-o", "out", "-q"))
     assert "event 1 has not come to rest" in line and "slip does not slow down: the loads drive it on" in line
     early = sets("time.end_s=1.5e-4", "time.quiet_s=1.2e-4")
