@@ -167,6 +167,11 @@ def quantity(value: float, unit: str, digits: int = 4) -> str:
     return number if unit == "1" else f"{number} {shown.name}"
 
 
+def velocity(m_per_s: float, digits: int = 4) -> str:
+    """A speed: of slow ones in mm/s, µm/s or nm/s."""
+    return f"{m_per_s:.{digits}g} m/s" if abs(m_per_s) >= 1 else f"{quantity(m_per_s, 'm', digits)}/s"
+
+
 def beyond(values: Mapping[str, float]) -> list[str]:
     """What is said of each value out of its range; NaN passes."""
     doubts = []

@@ -207,9 +207,9 @@ void print_event(std::size_t number, const record::SequenceEvent& e) {
 
 /// Events that begin as soon as one place passes mu_s by little may be of that place alone.
 void print_note_on_margin(const input::Case& config, const std::vector<record::SequenceEvent>& events) {
-  constexpr double small_m = 1e-7;
+  constexpr double small_m = 1e-7, usual_margin = 0.01;
   const auto n_small = std::ranges::count_if(events, [](const auto& e) { return e.max_slip_m < small_m; });
-  if (input::is_slow(config) || n_small == 0) return;
+  if (input::is_slow(config) || n_small == 0 || config.loading.critical_margin >= usual_margin) return;
   print(
       "note: {} of {} events slip by nanometres, less than 0.1 um: they begin where t/p passes mu_s by "
       "loading.critical_margin = {:g}; a larger one, 0.01 to 0.03, leaves larger events alone\n",
@@ -238,7 +238,8 @@ void run_sequence(const RunArguments& options, results::ResultFolder& folder,
   print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal,
         strongest.n_events + (is_of_event(strongest.phase) ? 0 : 1));
   print("ended: {}\n", finished.end);
-  if (!events.empty() && std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
+  if (!events.empty() &&
+      std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
     print("{} of them longer than the nucleation length, or global\n",
           std::ranges::count_if(events, record::has_nucleated));
   print_note_on_margin(config, events);

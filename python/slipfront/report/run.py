@@ -27,7 +27,7 @@ from slipfront.report.run_data import (
 )
 from slipfront.report.sketch import sketch
 from slipfront.report.tables import formatted, front_cells, table
-from slipfront.units import quantity
+from slipfront.units import quantity, velocity
 
 MOST_TIMES, MOST_NODES = 400, 320  # of a page with one run
 ENDS = {
@@ -248,10 +248,10 @@ def speed_words(m_per_s: float, info: dict[str, Any]) -> str:
     waves = info.get("wave_speeds")
     over = []
     for name in ("c_L", "c_S"):
-        c = waves.get(f"{name}_m_per_s") if isinstance(waves, dict) else None
+        c: Any = waves.get(f"{name}_m_per_s") if isinstance(waves, dict) else None
         if is_number(c) and c > 0:
             over.append(f"{m_per_s / c:.2f} {setup.WAVES[name]}")
-    return quantity(m_per_s, "m/s") + (f" ({', '.join(over)})" if over else "")
+    return velocity(m_per_s) + (f" ({', '.join(over)})" if over else "")
 
 
 def median_speeds(run: OpenRun) -> dict[int, str]:

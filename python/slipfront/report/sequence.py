@@ -78,7 +78,7 @@ def state_words(place: Place, key: str) -> str:
     return f"{ratio:.4f}, {words(phase)}: {shear} over {normal}, at {time} and a displacement of {moved}"
 
 
-LEAST_SLIP_M = 1e-7  # events of less are of some nodes where a margin is small
+LEAST_SLIP_M, USUAL_MARGIN = 1e-7, 0.01  # events of less slip are of some nodes where the margin is less
 
 
 def outcome(sequence: OpenSequence) -> str:
@@ -104,7 +104,7 @@ def small_events(sequence: OpenSequence) -> list[str]:
     """What to do where events of a law that sticks slip by nanometres."""
     n_small = int((sequence.events["max_slip_m"] < LEAST_SLIP_M).sum())
     margin = sequence.entry("loading", "critical_margin")
-    if n_small == 0 or len(sequence.slow) > 0 or not is_number(margin):
+    if n_small == 0 or len(sequence.slow) > 0 or not is_number(margin) or margin >= USUAL_MARGIN:
         return []
     return [
         f"{n_small} of {sequence.events.sizes['event']} events slip by nanometres: they begin where t/p "

@@ -12,7 +12,7 @@ from slipfront.files import is_number
 from slipfront.opened import Opened, OpenRun
 from slipfront.read import entry
 from slipfront.report.page import words
-from slipfront.units import name_of, quantity, unit_of
+from slipfront.units import name_of, quantity, unit_of, velocity
 
 MU_S, MU_K = "μ<sub>s</sub>", "μ<sub>k</sub>"
 WAVES = {"c_L": "c<sub>L</sub>", "c_S": "c<sub>S</sub>", "c_R": "c<sub>R</sub>"}
@@ -143,7 +143,7 @@ def machine(run: Opened) -> str:
 def motion(run: Opened) -> str:
     """How the upper edge or the machine moves on, in words."""
     speed = run.entry("loading", "shear_speed_m_per_s")
-    moves = f"; upper edge moves to +x at {quantity(speed, 'm/s', 3)}" if is_number(speed) and speed else ""
+    moves = f"; upper edge moves to +x at {velocity(speed, 3)}" if is_number(speed) and speed else ""
     return moves + machine(run)
 
 
