@@ -19,10 +19,9 @@ from slipfront.figures import style
 # Low friction on a small block, which nothing shears as it is pressed: it slides as one.
 E_PA, NU, RHO = 2.6e9, 0.0, 1200.0
 WIDTH_M, HEIGHT_M, P_PA = 0.02, 0.01, 1e6
-SPEED_OVER_C_L = 1e-9
-SPEED = SPEED_OVER_C_L * np.sqrt(E_PA / (RHO * (1 - NU**2)))  # of the machine, m/s
+SPEED = 1e-9 * np.sqrt(E_PA / (RHO * (1 - NU**2)))  # of the machine, m/s
 N, M = P_PA * WIDTH_M, RHO * WIDTH_M * HEIGHT_M  # per unit thickness
-STIFFNESS = E_PA / (2 * (1 + NU)) * WIDTH_M / HEIGHT_M  # of the block across
+STIFFNESS = E_PA / (2 * (1 + NU)) * WIDTH_M / HEIGHT_M  # of the block across, Pa
 A, B, V0 = 0.0010, 0.0015, 1e-6  # of rate and state
 F0 = 0.06
 INERTIA_FROM = 1e-6  # of the equation: slip rate, m/s
@@ -78,8 +77,8 @@ density_kg_per_m3 = {RHO}
 stiffness_damping_s = 1e-7
 [loading]
 mean_pressure_Pa = {P_PA}
-shear_stiffness_Pa = {softness * STIFFNESS}
-shear_speed_over_c_L = {SPEED_OVER_C_L}
+shear_stiffness_Pa_per_m = {softness * STIFFNESS / WIDTH_M}
+shear_speed_m_per_s = {SPEED}
 edge_margin_m = {0.1 * WIDTH_M}
 [friction]
 {states.friction()}

@@ -84,7 +84,8 @@ def farthest(run: slipfront.OpenRun, at_x_m: float, predicted_m: float) -> float
 
 
 def precursors(name: str, changes: dict[str, Any], folder: Path) -> Precursors:
-    sequence = sequence_of(PUSHED, {"loading.normal_stiffness_Pa": 0.0} | changes, folder)
+    loading = {"loading.normal_stiffness_Pa_per_m": 0.0, "loading.critical_margin": 0.005}
+    sequence = sequence_of(PUSHED, loading | changes, folder)
     events = sequence.events
     counted = ((events.max_slip_m > LEAST_SLIP_M) & (events.is_global == 0)).to_numpy()
     over = (events.length_m / events.nucleation_length_m).to_numpy()
@@ -202,7 +203,7 @@ poissons_ratio = 0.0
 density_kg_per_m3 = {RHO}
 [loading]
 mean_pressure_Pa = {P_PA}
-shear_speed_over_c_L = {speed}
+shear_speed_m_per_s = {speed * np.sqrt(E_PA / RHO)}
 edge_margin_m = 0.02
 [friction]
 law = "rate_and_state_aging"
@@ -335,7 +336,7 @@ def by_ramp(damping_s: float, speed: float, folder: Path) -> Loaded:
     end_s = SPAN_M / (speed * c_L)
     changes = PLATE | {
         "material.stiffness_damping_s": damping_s,
-        "loading.shear_speed_over_c_L": speed,
+        "loading.shear_speed_m_per_s": speed * c_L,
         "time.end_s": end_s,
         "time.quiet_s": np.inf,
         "output.history_interval_s": end_s / ROWS,

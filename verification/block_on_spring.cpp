@@ -83,7 +83,7 @@ Event program(double softness, int rows) {
   auto plate = mesh::Plate{.width_m = 3 * h_m, .height_m = H_m, .element_size_m = h_m};
   plate.corner = mesh::Corner::none;
   plate.sides = mesh::Sides::periodic;
-  const boundary::Machine machine{.shear_stiffness_Pa = k_Pa_per_m * plate.width_m};
+  const boundary::Machine machine{.shear_stiffness_Pa_per_m = k_Pa_per_m};
   const auto mesh = mesh::make_plate(plate);
   const interface::SlipWeakeningHealing law { .mu_s = mu_s, .mu_k = mu_k, .d_c_m = Slider::d_c * unit_m };
   const motion::BodySource block{mesh, undamped, nullptr, nullptr, machine};

@@ -14,7 +14,12 @@ PLATE = {
     "sides": "absorbing",
     "top": "absorbing",
 }
-PMMA = {"youngs_modulus_Pa": 2.6e9, "poissons_ratio": 0.37, "density_kg_per_m3": 1200}
+PMMA = {
+    "youngs_modulus_Pa": 2.6e9,
+    "poissons_ratio": 0.37,
+    "density_kg_per_m3": 1200,
+    "stiffness_damping_s": 0.1e-6,
+}
 FRICTION = {"law": "slip_weakening", "mu_s": 0.7, "mu_k": 0.4, "d_c_m": 4e-6}
 T_PA, P_PA, FLUID_PA = 1.2e6, 2e6, 0.6e6
 WELL_M, WIDTH_M, DIFFUSIVITY_M2_PER_S = 0.1, 10e-3, 5.0

@@ -37,8 +37,8 @@ BASES: dict[str, tuple[float, float, float] | None] = {
 HEIGHT_M, YOUNGS_MODULUS_PA, TILT_M = 0.1, 2.6e9, (0.37e-3, 0.037e-3)  # of the paper's plate
 # Held triggers: the brief left one of the plate on the plane tears it off a base of PMMA.
 TRIGGERS = {
-    "left": {"event.trigger_zone_m": 20e-3, "event.trigger_amount": 20},
-    "right": {"event.trigger_zone_m": 10e-3, "event.trigger_amount": 5},
+    "left": {"event.trigger_zone_m": 20e-3, "event.trigger_over_missing": 20},
+    "right": {"event.trigger_zone_m": 10e-3, "event.trigger_over_missing": 5},
 }
 HELD = {"event.trigger_ramp_s": 5e-6, "event.trigger_duration_s": math.inf}
 

@@ -14,6 +14,7 @@ import slipfront
 
 HERE = Path(__file__).parent
 WIDTH_M = 0.2
+C_L_M_PER_S = math.sqrt(2.6e9 / (1 - 0.37**2) / 1200)  # of the plate
 # The paper's four events; the last is spontaneous, too.
 EVENTS = ("spontaneous", "left", "right", "spontaneous_mu_k_1.0")
 TRIGGERED = ("left", "right")
@@ -91,7 +92,7 @@ def sequences(quick: bool) -> list[Run]:
             | {
                 "title": f"loaded on to global sliding, mu_k = {mu_k:.1f}",
                 "friction.mu_k": mu_k,
-                "loading.shear_speed_over_c_L": 1e-9,
+                "loading.shear_speed_m_per_s": 1e-9 * C_L_M_PER_S,
                 "sequence.max_events": 1000,
                 "sequence.to_global_sliding": True,
                 "time.end_s": 10e-3,
@@ -173,9 +174,13 @@ STUDIES = (
         "top edge held or free along x while it is tilted",
         tuple((word, math.nan, {"loading.top_during_tilt": word}) for word in ("held", "free")),
     ),
-    Values("left_amount", "event.trigger_amount", "strength of the trigger", (5, 10, 20, 40, 80), ("left",)),
+    Values(
+        "left_amount", "event.trigger_over_missing", "strength of the trigger", (5, 10, 20, 40, 80), ("left",)
+    ),
     # The pressure has its peak at the right edge: more than 20 tears it off the plane.
-    Values("right_amount", "event.trigger_amount", "strength of the trigger", (2, 5, 10, 20), ("right",)),
+    Values(
+        "right_amount", "event.trigger_over_missing", "strength of the trigger", (2, 5, 10, 20), ("right",)
+    ),
     Values(
         "trigger_zone",
         "event.trigger_zone_m",

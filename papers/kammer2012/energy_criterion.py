@@ -249,7 +249,7 @@ def write(results: Path, picture: Path) -> Tables:
         others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
         lefts = {
             f"amount {amount}": first_front(
-                results / "studies/left_amount" / amount / "left", "event.trigger_amount", float(amount)
+                results / "studies/left_amount" / amount / "left", "event.trigger_over_missing", float(amount)
             )
             for amount in AMOUNTS
         }

@@ -119,7 +119,7 @@ def trigger_choices(event: str) -> list[Choice]:
         ),
         of(
             "added",
-            "amount",
+            "over_missing",
             "from just enough for a front, to 80 times what is missing to the strength",
             (2.0, 5.0, 10.0, 20.0, 40.0, 80.0),
             5.0,
@@ -128,7 +128,7 @@ def trigger_choices(event: str) -> list[Choice]:
         ),
         of(
             "raised",
-            "amount",
+            "over_strength",
             "from just above the strength to 80 times it",
             (1.05, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0),
             2.0,

@@ -15,6 +15,7 @@ from slipfront.figures import style
 from slipfront.figures.drawing import write_figure
 from slipfront.pages import Tables, command_to_renew, table
 
+from cases import C_L_M_PER_S
 from fracture import G_over_Gamma, correlation
 
 MU_K = (0.6, 1.0)
@@ -26,7 +27,7 @@ DRAWN = 12  # global events of which they are
 RISE_TO, FASTEST = 2.5, 3.0  # drawn; over c_L
 CHANGES = {
     "sequence.max_events": EVENTS,
-    "loading.shear_speed_over_c_L": 1e-9,
+    "loading.shear_speed_m_per_s": 1e-9 * C_L_M_PER_S,
     "time.end_s": 10e-3,
     "output.history_interval_s": 2e-6,
     "output.snapshot_times_s": [],

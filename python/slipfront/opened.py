@@ -211,6 +211,16 @@ class Opened:
         """That of the case; may be empty."""
         return str(self._case.get("title", ""))
 
+    @property
+    def kind(self) -> str:
+        """What starts the event: left, right, spontaneous, ..."""
+        return str(self.entry("event", "kind"))
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether the tractions before the event were given, not found by tilting and shearing the plate."""
+        return bool(self.entry("loading", "method") == "prestress")
+
     def _attributes(self) -> dict[str, str]:
         return {"title": self.title, "status": self.status, "folder": str(self.folder)}
 
@@ -263,16 +273,6 @@ class OpenRun(Opened):
     def c_L_m_per_s(self) -> float:
         """Longitudinal wave speed of the plate."""
         return self.fact("wave_speeds.c_L_m_per_s")
-
-    @property
-    def kind(self) -> str:
-        """What starts the event: left, right, spontaneous, ..."""
-        return str(self.entry("event", "kind"))
-
-    @property
-    def prescribed(self) -> bool:
-        """Whether the tractions before the event were given, not found by tilting and shearing the plate."""
-        return bool(self.entry("loading", "method") == "prestress")
 
     @property
     def prestress(self) -> dict[str, float] | None:

@@ -264,9 +264,43 @@ def resume(
     return opened(folder)
 
 
+Law = Callable[..., ArrayLike]
+
+
+def checked_at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray) -> np.ndarray:
+    """What a function of a law gives, a value for each node."""
+    values = array(given, name)
+    if len(values) not in (1, len(like)):
+        raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
+    if not (np.isfinite(values) & (values >= least)).all():
+        raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
+    return np.ascontiguousarray(np.broadcast_to(values, like.shape))
+
+
+def checked_mu(mu: Law) -> Callable[..., np.ndarray]:
+    """The function, with what it gives checked."""
+    if not callable(mu):
+        raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
+
+    def of_arrays(speed_m_per_s: np.ndarray, *slip_or_states: np.ndarray) -> np.ndarray:
+        return checked_at_nodes(mu(speed_m_per_s, *slip_or_states), "mu", 0, speed_m_per_s)
+
+    return of_arrays
+
+
+def coefficient_at_rest(mu: Law) -> float:
+    return float(np.ravel(mu(np.zeros(1), np.zeros(1)))[0])
+
+
+def checked_law(mu: Law) -> tuple[Callable[..., np.ndarray], float]:
+    """The function of an Interface, checked, and its coefficient at rest."""
+    of_arrays = checked_mu(mu)
+    return of_arrays, coefficient_at_rest(of_arrays)
+
+
 def run_with_law(
     case: CaseLike,
-    mu: Callable[..., ArrayLike],
+    mu: Law,
     changes: Mapping[str, Any] | None = None,
     /,
     *,
@@ -297,8 +331,6 @@ def run_with_law(
     that they cannot be kept in a folder or gone on with: they go with the returned object. Raises what `mu`
     raises, CaseError where it gives no number or one below 0, and as `run` does."""
     prepared = make_case(case, changes, tables)
-    if not callable(mu):
-        raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
     if evolve is not None and not callable(evolve):
         raise CaseError(f"evolve is {shown(evolve)}; it must be a function of a time, slip rates and states")
     if (initial is None) != (states is None) or (initial is not None and evolve is None):
@@ -308,23 +340,13 @@ def run_with_law(
     for name in states or ():
         if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) or name in (*HISTORY_FIELDS, "time_s", "x_m"):
             raise CaseError(f"states: {shown(name)} cannot be a state's name in results; choose another one")
-
-    def at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray) -> np.ndarray:
-        values = array(given, name)
-        if len(values) not in (1, len(like)):
-            raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
-        if not (np.isfinite(values) & (values >= least)).all():
-            raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
-        return np.ascontiguousarray(np.broadcast_to(values, like.shape))
-
-    def of_arrays(speed_m_per_s: np.ndarray, *slip_or_states: np.ndarray) -> np.ndarray:
-        return at_nodes(mu(speed_m_per_s, *slip_or_states), "mu", 0, speed_m_per_s)
+    of_arrays = checked_mu(mu)
 
     def states_of(given: Any, name: str, n_states: int, like: np.ndarray) -> list[np.ndarray]:
         values = given if isinstance(given, tuple) else (given,)
         if len(values) != n_states:
             raise CaseError(f"{name} returns {len(values)} states, not a tuple of {n_states}")
-        return [at_nodes(value, name, -math.inf, like) for value in values]
+        return [checked_at_nodes(value, name, -math.inf, like) for value in values]
 
     def after(dt_s: float, speed_m_per_s: np.ndarray, *now: np.ndarray) -> list[np.ndarray]:
         assert evolve is not None
@@ -335,7 +357,7 @@ def run_with_law(
         return states_of(initial(t_Pa, p_Pa), "initial", len(states), t_Pa)
 
     if evolve is None:
-        at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
+        at_rest = coefficient_at_rest(of_arrays)
         expected = prepared.static_coefficient
         if not math.isclose(at_rest, expected, rel_tol=1e-12):
             raise CaseError(

@@ -19,6 +19,7 @@ ENDINGS = {
     "_J_per_m2": "J/m2",
     "_m2_per_s2": "m2/s2",
     "_J_per_m": "J/m",
+    "_Pa_per_m": "Pa/m",
     "_N_per_m": "N/m",
     "_m_per_s": "m/s",
     "_per_s": "1/s",
@@ -29,7 +30,7 @@ ENDINGS = {
     "_m": "m",
 }
 SYMBOLS = ("mu_s", "mu_k", "d_c", "l_star")  # their underscores are subscripts
-PREFIXED = ("m", "s", "Pa", "N/m")
+PREFIXED = ("m", "s", "Pa", "Pa/m", "N/m")
 PREFIXES = {"G": 1e-9, "M": 1e-6, "k": 1e-3, "": 1.0, "m": 1e3, "µ": 1e6, "n": 1e9}
 WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "m2/s2": "m²/s²", "J/m3": "J/m³", "J/m2": "J/m²"}
 WRITTEN |= {"J m-1": "J/m", "J m-2": "J/m²"}  # of NetCDF
@@ -164,6 +165,11 @@ def quantity(value: float, unit: str, digits: int = 4) -> str:
     shown = engineering(unit, value)
     number = f"{value * shown.factor:.{digits}g}"
     return number if unit == "1" else f"{number} {shown.name}"
+
+
+def velocity(m_per_s: float, digits: int = 4) -> str:
+    """A speed: of slow ones in mm/s, µm/s or nm/s."""
+    return f"{m_per_s:.{digits}g} m/s" if abs(m_per_s) >= 1 else f"{quantity(m_per_s, 'm', digits)}/s"
 
 
 def beyond(values: Mapping[str, float]) -> list[str]:

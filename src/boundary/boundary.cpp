@@ -20,17 +20,19 @@ Boundary make_boundary(const mesh::Mesh& mesh, const Machine& machine) {
   }
   all.pushed = pushed_nodes(mesh, machine.pusher);
   const auto shares = shares_of_pushed(mesh, all.pushed);
+  const double pusher_m = machine.pusher.to_m - machine.pusher.from_m;
   for (std::size_t k = 0; k < all.pushed.size(); ++k)
-    all.nodes.push_back({.node = all.pushed[k], .spring_x_N_per_m = shares[k] * machine.shear_stiffness_Pa});
+    all.nodes.push_back(
+        {.node = all.pushed[k], .spring_x_N_per_m = shares[k] * pusher_m * machine.shear_stiffness_Pa_per_m});
   const auto n_below = all.nodes.size();
   for (std::size_t k = 0; k < mesh.far_edge_nodes.size(); ++k) {
     const auto n = mesh.far_edge_nodes[k];
-    const double share = mesh.far_edge_shares[k];
+    const double length_m = mesh.far_edge_lengths_m[k];
     const bool is_pushed_corner = !all.pushed.empty() && all.pushed.back() == n;
     auto& node = is_pushed_corner ? all.nodes[n_below - 1] : all.nodes.emplace_back();
     node.node = n;
-    if (!machine.pusher.is_there()) node.spring_x_N_per_m = share * machine.shear_stiffness_Pa;
-    node.spring_y_N_per_m = share * machine.normal_stiffness_Pa;
+    if (!machine.pusher.is_there()) node.spring_x_N_per_m = length_m * machine.shear_stiffness_Pa_per_m;
+    node.spring_y_N_per_m = length_m * machine.normal_stiffness_Pa_per_m;
   }
   return all;
 }

@@ -6,15 +6,21 @@
 
 namespace slipfront::boundary {
 
-/// The machine that loads a body at its far edge, or at its left side by a pusher. Its stiffnesses, per unit
-/// thickness, are in series with what it moves along x, and with the far edge along y once that is pressed
-/// down. Every node has its share of them by its length.
+/// The machine that loads a body at its far edge, or at its left side by a pusher. Its stiffnesses, mean
+/// stress per metre of its motion, are in series with what it moves along x, the far edge or what is under
+/// the pusher, and with the far edge along y once that is pressed down.
 struct Machine {
-  double shear_stiffness_Pa = infinity;
-  double normal_stiffness_Pa = infinity;  ///< 0: the forces stay
-  Pusher pusher = {};                     ///< with it the far edge moves freely along x
+  double shear_stiffness_Pa_per_m = infinity;
+  double normal_stiffness_Pa_per_m = infinity;  ///< 0: the forces stay
+  Pusher pusher = {};                           ///< with it the far edge moves freely along x
 
-  bool is_rigid() const { return shear_stiffness_Pa == infinity && normal_stiffness_Pa == infinity; }
+  bool is_rigid() const {
+    return shear_stiffness_Pa_per_m == infinity && normal_stiffness_Pa_per_m == infinity;
+  }
+  /// Length of what it moves along x, of a body of a given width.
+  double moved_length_m(double width_m) const {
+    return pusher.is_there() ? pusher.to_m - pusher.from_m : width_m;
+  }
   /// Whether both displacements of the whole far edge are prescribed, and no others.
   bool prescribes_far_edge() const { return is_rigid() && !pusher.is_there(); }
 };

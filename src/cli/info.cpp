@@ -13,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/words.hpp"
 #include "files/text.hpp"
 #include "fracture/prediction.hpp"
 #include "problem/problem.hpp"
@@ -79,11 +80,11 @@ void add_steps(const Problem& problem, const run::Info& info, Listing& list) {
                              : "the first event",
                          info.needs.slow_bytes * 1e-9));
   const auto& machine = problem.above().machine;
-  if (std::isfinite(machine.shear_stiffness_Pa))
-    list.add("machine along x", fmt::format("{:g} Pa", machine.shear_stiffness_Pa));
-  if (std::isfinite(machine.normal_stiffness_Pa))
-    list.add("machine downwards", machine.normal_stiffness_Pa > 0
-                                      ? fmt::format("{:g} Pa", machine.normal_stiffness_Pa)
+  if (std::isfinite(machine.shear_stiffness_Pa_per_m))
+    list.add("machine along x", fmt::format("{:g} Pa/m", machine.shear_stiffness_Pa_per_m));
+  if (std::isfinite(machine.normal_stiffness_Pa_per_m))
+    list.add("machine downwards", machine.normal_stiffness_Pa_per_m > 0
+                                      ? fmt::format("{:g} Pa/m", machine.normal_stiffness_Pa_per_m)
                                       : std::string("dead load"));
   if (const auto& path = problem.sequence.path; !path.times_s.empty())
     list.add("path of the loading", fmt::format("{} points, to {:g} m at {:g} s", path.times_s.size(),
@@ -268,6 +269,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   const auto info = given.placing_errors([&] { return run::info(problem, n_processes); });
   Listing list;
   if (!problem.source.title.empty()) list.add("title", files::one_line(problem.source.title));
+  list.add("set-up", set_up(problem));
   add_wave_speeds(info, list);
   add_size(info, list);
   add_steps(problem, info, list);
@@ -276,8 +278,9 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   if (info.loads) add_loads(*info.loads, problem.above().machine.pusher.is_there(), problem.heals(), list);
   if (const double speed_m_per_s = shear_speed_in_event_m_per_s(problem); speed_m_per_s > 0)
     list.add("upper edge during the event",
-             fmt::format("moves to +x at {:.3g} m/s (loading.shear_speed_over_c_L), {:.3g} m by time.end_s",
-                         speed_m_per_s, speed_m_per_s * problem.time.end_s));
+             fmt::format("moves to +x at {} (loading.shear_speed_m_per_s), {} by time.end_s",
+                         engineering(speed_m_per_s, "m/s", 3),
+                         engineering(speed_m_per_s * problem.time.end_s, "m", 3)));
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, problem.friction.law.name(), list);
   if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);

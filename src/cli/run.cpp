@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
 #include "cli/print.hpp"
+#include "cli/words.hpp"
 #include "fracture/passage.hpp"
 #include "fronts/fit.hpp"
 #include "problem/source.hpp"
@@ -73,34 +75,24 @@ void print_rupture(const run::RuptureOutlook& rupture) {
 }
 
 std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds) {
-  std::vector<double> v_m_per_s;
-  for (const auto& point : front.points) v_m_per_s.push_back(point.v_tip_m_per_s);
-  const double median = fronts::median(v_m_per_s);
+  const double median = median_speed_m_per_s(front);
+  if (!std::isfinite(median)) return "speed undefined";
   const auto fast =
       std::ranges::find_if(front.points, [&](const auto& point) { return point.v_tip_m_per_s > speeds.c_S; });
-  if (std::isfinite(median))
-    return fmt::format(
-        "median speed {:.2f} c_L, {:.2f} c_S{}", median / speeds.c_L, median / speeds.c_S,
-        fast == front.points.end() ? "" : fmt::format(", above c_S first at {:.4f} m", fast->x_m));
-  const auto is_triggered = [](const auto& point) {
-    return point.speed_kind == fronts::SpeedKind::triggered;
-  };
-  return std::ranges::all_of(front.points, is_triggered) ? "did not leave the trigger" : "speed undefined";
+  return fmt::format(
+      "median speed {}{}", speed(median, speeds),
+      fast == front.points.end() ? "" : fmt::format(", above c_S first at {}", engineering(fast->x_m, "m")));
 }
 
 /// Medians over the front's nodes.
 std::string fracture_text(const run::Result& result, std::size_t f) {
-  const auto& event = result.event;
-  const auto& front = result.fronts[f];
-  const auto& passages = result.passages[f];
-  std::vector<double> work, zone_m, G_slip;
-  for (std::size_t k = 0; k < passages.size(); ++k) {
-    const auto node = static_cast<std::size_t>(front.points[k].node);
-    if (event.breakdown.complete[node] != 0) work.push_back(event.breakdown.work_J_per_m2[node]);
-    zone_m.push_back(passages[k].cohesive_zone_m);
-    G_slip.push_back(passages[k].G_slip_J_per_m2);
+  std::vector<double> zone_m, G_slip;
+  for (const auto& passage : result.passages[f]) {
+    zone_m.push_back(passage.cohesive_zone_m);
+    G_slip.push_back(passage.G_slip_J_per_m2);
   }
-  const double gamma = fronts::median(work), G = fronts::median(G_slip), zone = fronts::median(zone_m);
+  const double gamma = fracture_energy_J_per_m2(result, result.fronts[f]);
+  const double G = fronts::median(G_slip), zone = fronts::median(zone_m);
   if (!(gamma > 0)) return {};
   auto text = fmt::format("  fracture energy {:.3g} J/m2 in the median", gamma);
   if (!run::has_fracture_energy(result.problem)) text += " (of this mesh: the law has no length)";
@@ -108,46 +100,61 @@ std::string fracture_text(const run::Result& result, std::size_t f) {
   const auto n_known = std::ranges::count_if(G_slip, [](double g) { return std::isfinite(g); });
   if (2 * n_known > std::ssize(G_slip)) text += fmt::format(", G by slip {:.3g} J/m2", G);
   if (std::isfinite(zone))
-    text += fmt::format(", cohesive zone {:.2g} m, {:.2g} elements", zone,
+    text += fmt::format(", cohesive zone {}, {:.2g} elements", engineering(zone, "m", 2),
                         zone / result.problem.element_size_m());
   return text + "\n";
 }
 
+/// Those that did not leave the trigger share a line.
+void print_fronts(const run::Result& result) {
+  std::vector<int> of_trigger;
+  for (std::size_t f = 0; f < result.fronts.size(); ++f) {
+    const auto& front = result.fronts[f];
+    const auto &first = front.points.front(), &last = front.points.back();
+    if (is_of_trigger(front)) {
+      of_trigger.push_back(front.id);
+      continue;
+    }
+    print("front {}: x = {} to {}, {} to {}, {}, {}, ends: {}\n", front.id, engineering(first.x_m, "m"),
+          engineering(last.x_m, "m"), engineering(first.onset_s, "s"), engineering(last.onset_s, "s"),
+          speed_text(front, result.speeds), fronts::name(front.mode), fronts::name(front.end));
+    print("{}", fracture_text(result, f));
+  }
+  if (!of_trigger.empty())
+    cli::print("front{} {}: did not leave the trigger\n", of_trigger.size() == 1 ? "" : "s",
+               fmt::join(of_trigger, ", "));
+}
+
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
+  print("{}\n{}\n", outcome(result), set_up(result.problem));
   if (initial.prescribed)
     print("prescribed tractions, t/p {} to {:.4g}{}\n", initial.subcritical.peak_ratio < 0 ? "down" : "up",
           initial.subcritical.peak_ratio,
           result.problem.prestress->file.empty()
               ? ""
-              : fmt::format(" at x = {:.4g} m", initial.subcritical.peak_x_m));
+              : " at x = " + engineering(initial.subcritical.peak_x_m, "m"));
   else if (initial.ramp)
     print_ramp(*initial.ramp, initial.critical_shear_m);
   else if (statics::is_sheared_by_force(result.problem.loading))
-    print("shear force {:.5g} N/m, {:.4g} of the critical one, t/p up to {:.4g} at x = {:.4g} m\n",
-          initial.loads->shear_force_N_per_m,
+    print("shear force {}, {:.4g} of the critical one, t/p up to {:.4g} at x = {}\n",
+          engineering(initial.loads->shear_force_N_per_m, "N/m"),
           initial.loads->shear_force_N_per_m / initial.loads->critical_shear_force_N_per_m,
-          initial.subcritical.peak_ratio, initial.subcritical.peak_x_m);
+          initial.subcritical.peak_ratio, engineering(initial.subcritical.peak_x_m, "m"));
   else
-    print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.subcritical.peak_x_m,
-          initial.critical_shear_m);
+    print("t/p inside reaches mu_s at x = {}, at a shear of {}\n",
+          engineering(initial.subcritical.peak_x_m, "m"), engineering(initial.critical_shear_m, "m"));
   if (const double speed_m_per_s = shear_speed_in_event_m_per_s(result.problem); speed_m_per_s > 0)
-    print("the upper edge moves to +x at {:.3g} m/s during the event (loading.shear_speed_over_c_L)\n",
-          speed_m_per_s);
+    print("the upper edge moves to +x at {} during the event (loading.shear_speed_m_per_s)\n",
+          engineering(speed_m_per_s, "m/s", 3));
   print(
-      "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
+      "{} steps of {} ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
       "updates/s\n",
-      event.steps, result.step_s, std::lround(result.step_s / result.substep_s), result.stepping_wall_s,
+      event.steps, engineering(result.step_s, "s"), std::lround(result.step_s / result.substep_s),
+      result.stepping_wall_s,
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
   print("ended: {}\n", run::end_of_event(result));
-  for (std::size_t f = 0; f < result.fronts.size(); ++f) {
-    const auto& front = result.fronts[f];
-    print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, {}, {}, ends: {}\n", front.id,
-          front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
-          1e6 * front.points.back().onset_s, speed_text(front, result.speeds), fronts::name(front.mode),
-          fronts::name(front.end));
-    print("{}", fracture_text(result, f));
-  }
+  print_fronts(result);
   print_rupture(result.rupture);
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
@@ -190,22 +197,37 @@ struct GivenCase {
 
 void print_event(std::size_t number, const record::SequenceEvent& e) {
   const auto extent = e.length_m > 0
-                          ? fmt::format("x = {:.4f} to {:.4f} m{}, mean slip {:.3g} m", e.from_x_m, e.to_x_m,
-                                        e.is_global != 0 ? " (global)" : "", e.mean_slip_m)
+                          ? fmt::format("x = {} to {}{}, mean slip {}", engineering(e.from_x_m, "m"),
+                                        engineering(e.to_x_m, "m"), e.is_global != 0 ? " (global)" : "",
+                                        engineering(e.mean_slip_m, "m", 3))
                           : "nowhere faster than a front's tip";
-  print("event {}: at {:.6g} s, {}, F_S/F_N {:.4f} to {:.4f}, {} {}\n", number, e.begin_s, extent,
-        e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
+  print("event {}: at {}, {}, F_S/F_N {:.4f} to {:.4f}, {} {}\n", number, engineering(e.begin_s, "s", 6),
+        extent, e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
 }
 
-void print_sequence(const run::Finished& finished, const std::string& dir) {
+/// Events that begin as soon as one place passes mu_s by little may be of that place alone.
+void print_note_on_margin(const Problem& problem, const std::vector<record::SequenceEvent>& events) {
+  constexpr double small_m = 1e-7, usual_margin = 0.01;
+  const auto n_small = std::ranges::count_if(events, [](const auto& e) { return e.max_slip_m < small_m; });
+  if (problem.is_slow() || n_small == 0 || problem.loading.critical_margin >= usual_margin) return;
+  print(
+      "note: {} of {} events slip by nanometres, less than 0.1 um: they begin where t/p passes mu_s by "
+      "loading.critical_margin = {:g}; a larger one, 0.01 to 0.03, leaves larger events alone\n",
+      n_small, events.size(), problem.loading.critical_margin);
+}
+
+void print_sequence(const run::Finished& finished, const Problem& problem, const std::string& dir) {
+  const auto& events = finished.events;
+  print("{}\n", outcome(events));
   const auto& strongest = record::strongest(finished.loading);
   print("largest F_S/F_N {:.4f}, before event {}\n", strongest.shear_over_normal,
         strongest.n_events + (is_of_event(strongest.phase) ? 0 : 1));
-  const auto& events = finished.events;
-  print("ended after {} event{}: {}\n", events.size(), events.size() == 1 ? "" : "s", finished.end);
-  if (std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
+  print("ended: {}\n", finished.end);
+  if (!events.empty() &&
+      std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
     print("{} of them longer than the nucleation length, or global\n",
           std::ranges::count_if(events, record::has_nucleated));
+  print_note_on_margin(problem, events);
   print("results: {}\n", dir);
 }
 
@@ -240,6 +262,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
         if (!options.quiet) print("note: {}\n", note);
     };
     const bool is_sequence = given && given->problem.is_sequence();
+    if (is_sequence && !options.quiet) print("{}\n", set_up(given->problem));
     if (is_sequence) print_notes();
     const auto finished = options.restart
                               ? run::resume(folder, given ? &given->problem : nullptr, options.session, hooks)
@@ -252,7 +275,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     if (finished.end.empty())
       print_summary(finished.last.result, finished.last.initial, folder.dir().string());
     else
-      print_sequence(finished, folder.dir().string());
+      print_sequence(finished, problem::read_problem(folder.dir()), folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;
     throw WriteError("{}; {}", error.what(), run::how_to_resume(folder));

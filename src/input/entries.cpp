@@ -339,6 +339,10 @@ Condition pushed() {
       Message("{} = left or right and {} = added or raised", Key("event.kind"), Key("event.trigger_form")),
       [](const Case& c) { return start_of(c).pushes_edge(); }};
 }
+Condition pushed_in_form(TriggerForm form, const char* word) {
+  return {Message("{} = left or right and {} = {}", Key("event.kind"), Key("event.trigger_form"), word),
+          [form](const Case& c) { return is_at_edge(c.event) && c.trigger.form == form; }};
+}
 Condition started_by_force() {
   return {Message("{}, or {}", pushed().setting, overstressed().setting),
           [](const Case& c) { return start_of(c).is_by_force(); }};
@@ -480,9 +484,8 @@ void add_loading(Entries& all) {
   loading.stage = Stage::motion;
   loading.only_with = {};
   loading.add(
-      "shear_speed_over_c_L", &Loading::shear_speed_over_c_L, {0, 1, false, true},
-      "speed of the top edge to +x over the longitudinal wave speed c_L of slipfront info, in a ramp and "
-      "during the event, or of a pusher between events; "
+      "shear_speed_m_per_s", &Loading::shear_speed_m_per_s, at_least(0),
+      "speed of the top edge to +x in a ramp and during the event, or of a pusher between events; below c_L; "
       "0 holds it still, which a ramp and event.kind = spontaneous do not allow");
   loading.stage = Stage::statics;
   loading.only_with = tilted();
@@ -519,12 +522,13 @@ void add_machine(Entries& all) {
   Table loading(
       all, "loading", [](auto& config) -> auto& { return config.machine; }, Stage::statics);
   loading.only_with = direct();
-  loading.add("shear_stiffness_Pa", &boundary::Machine::shear_stiffness_Pa, above_or_infinite(0),
-              "stiffness of the loading machine along x, force per metre of thickness over displacement, in "
-              "series with the top edge or the pusher; inf: rigid");
-  loading.add("normal_stiffness_Pa", &boundary::Machine::normal_stiffness_Pa, at_least_or_infinite(0),
-              "the same downwards, on the top edge once it is tilted; 0: a dead load, inf: the edge stays at "
-              "its height");
+  loading.add("shear_stiffness_Pa_per_m", &boundary::Machine::shear_stiffness_Pa_per_m, above_or_infinite(0),
+              "stiffness of the loading machine along x, in series with the top edge or the pusher: mean "
+              "stress on that edge, or under the pusher, per metre of the machine's motion; inf: rigid");
+  loading.add(
+      "normal_stiffness_Pa_per_m", &boundary::Machine::normal_stiffness_Pa_per_m, at_least_or_infinite(0),
+      "the same downwards, mean stress on the top edge, once that is tilted; 0: a dead load, inf: the "
+      "edge stays at its height");
 }
 
 void add_prestress(Entries& all) {
@@ -613,14 +617,16 @@ void add_event(Entries& all) {
   trigger.word(
       "trigger_form", &Trigger::form,
       {{"added", TriggerForm::added}, {"raised", TriggerForm::raised}, {"weakened", TriggerForm::weakened}},
-      "tangential traction added, or raised to a multiple of mu_s p_s, in the direction in which the zone is "
-      "loaded, or mu = mu_k from the start");
+      "tangential traction added, a multiple of what is missing to the strength, or raised to a multiple of "
+      "the strength, both in the direction in which the zone is loaded; or mu = mu_k from the start");
   trigger.add("trigger_zone_m", &Trigger::zone_m, above(0),
               "length of the trigger zone, inward from the outermost node in contact");
-  trigger.only_with = pushed();
-  trigger.add(
-      "trigger_amount", &Trigger::amount, at_least(0),
-      "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s");
+  trigger.only_with = pushed_in_form(TriggerForm::added, "added");
+  trigger.add("trigger_over_missing", &Trigger::amount, at_least(0),
+              "the added traction over what is missing to the strength, mu_s p_s - t_s: 1 just reaches it");
+  trigger.only_with = pushed_in_form(TriggerForm::raised, "raised");
+  trigger.add("trigger_over_strength", &Trigger::amount, at_least(0),
+              "the traction to which t_s is raised over the strength, mu_s p_s: 1 just reaches it");
   trigger.only_with = started_by_force();
   trigger.add("trigger_ramp_s", &Trigger::ramp_s, at_least(0), "time over which the trigger rises");
   trigger.word(
@@ -670,13 +676,13 @@ void add_sequence(Entries& all) {
   sequence.only_with = in_sequence();
   sequence.add(
       "end_s", &Sequence::end_s, above_or_infinite(0),
-      "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_over_c_L");
+      "time from the tilt on at which the loading ends: the top edge moves at loading.shear_speed_m_per_s");
   sequence.add("to_global_sliding", &Sequence::to_global_sliding,
                "end with the first event in which all nodes slip but those within loading.edge_margin_m");
   sequence.add(
       "times_s", [](auto& s) -> auto& { return s.path.times_s; }, above(0),
       "times since normal loading, ascending, at which the loading has reached shears_m; none: it moves at "
-      "loading.shear_speed_over_c_L, as during each event in any case. It ends with the last one");
+      "loading.shear_speed_m_per_s, as during each event in any case. It ends with the last one");
   sequence.add(
       "shears_m", [](auto& s) -> auto& { return s.path.shears_m; }, at_least(0),
       "displacements along x of the top edge, the pusher or the machine then, none less than the one before; "
@@ -807,9 +813,9 @@ std::string describe(const Range& range, const std::string& unit) {
 
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
-      {"m", 1e-12, 1e6},      {"s", 1e-15, 1e12},    {"Pa", 1e-6, 1e15},
-      {"kg/m3", 1e-6, 1e6},   {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6},
-      {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},  {"", 1e-18, 1e9}};
+      {"m", 1e-12, 1e6},     {"s", 1e-15, 1e12},  {"Pa", 1e-6, 1e15},     {"kg/m3", 1e-6, 1e6},
+      {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6}, {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},
+      {"Pa/m", 1e-6, 1e24},  {"", 1e-18, 1e9}};
   return all;
 }
 

@@ -111,17 +111,26 @@ void check_element_size(const Case& config) {
         .about("plate.width_m", "plate.height_m");
 }
 
+void check_shear_speed(const Case& config) {
+  const double v = config.loading.shear_speed_m_per_s,
+               c_L = solid::longitudinal_speed_m_per_s(config.material);
+  if (v >= c_L)
+    throw UserError("{} is {:.12g} m/s; it must be less than c_L, {:.4g} m/s",
+                    Key("loading.shear_speed_m_per_s"), v, c_L)
+        .about("material.youngs_modulus_Pa", "material.density_kg_per_m3");
+}
+
 /// What a prescribed state, or the lack of one, asks of the other keys.
 void check_prestress(const Case& config, const Document& document) {
   const Key method("loading.method"), kind("event.kind");
   if (!is_prestressed(config)) {
     const bool is_driven = config.loading.method == statics::LoadingMethod::ramp ||
                            config.event == interface::EventKind::spontaneous;
-    if (config.loading.shear_speed_over_c_L > 0 || !is_driven) return;
+    if (config.loading.shear_speed_m_per_s > 0 || !is_driven) return;
     throw UserError(
         "{} is 0; that holds the top edge still, which a ramp or {} = spontaneous needs to move; choose a "
         "speed greater than 0",
-        Key("loading.shear_speed_over_c_L"), kind)
+        Key("loading.shear_speed_m_per_s"), kind)
         .about(method.name);
   }
   const Key t("prestress.t_Pa"), p("prestress.p_Pa");
@@ -403,26 +412,21 @@ void check_pusher(const Case& config) {
 }
 
 void check_machine(const Case& config) {
-  const auto& [shear_Pa, normal_Pa, pusher] = config.machine;
-  if (config.machine.is_rigid()) return;
+  const auto& machine = config.machine;
+  if (machine.is_rigid()) return;
   // Beyond this a spring would set the time step: its frequency on a node of the edge that of the elements.
-  const double width_m = config.plate.width_m;
   const double h_m = config.plate.element_size_m * std::pow(2, config.plate.coarsenings);
-  const double c_L = solid::longitudinal_speed_m_per_s(config.material);
-  const double of_elements_Pa = 2 * config.material.density_kg_per_m3 * c_L * c_L / h_m;
-  const auto require_soft = [&](const char* key, double stiffness_Pa, double length_m) {
-    const double most_Pa = of_elements_Pa * length_m;
-    if (stiffness_Pa != infinity && stiffness_Pa > most_Pa)
+  const double most_Pa_per_m = 2 * solid::longitudinal_modulus_Pa(config.material) / h_m;
+  const char* const shear = "loading.shear_stiffness_Pa_per_m";
+  const char* const normal = "loading.normal_stiffness_Pa_per_m";
+  for (const auto& [key, Pa_per_m] :
+       {std::pair(shear, machine.shear_stiffness_Pa_per_m), {normal, machine.normal_stiffness_Pa_per_m}})
+    if (Pa_per_m != infinity && Pa_per_m > most_Pa_per_m)
       throw UserError(
-          "{} = {:g} Pa is stiffer than the elements that it moves, {:.3g} Pa; leave the key out for "
+          "{} = {:g} Pa/m is stiffer than the elements that it moves, {:.3g} Pa/m; leave the key out for "
           "a rigid machine",
-          Key(key), stiffness_Pa, most_Pa);
-  };
-  const char* const shear = "loading.shear_stiffness_Pa";
-  const char* const normal = "loading.normal_stiffness_Pa";
-  require_soft(shear, shear_Pa, pusher.is_there() ? pusher.to_m - pusher.from_m : width_m);
-  require_soft(normal, normal_Pa, width_m);
-  const Key key(shear_Pa != infinity ? shear : normal);
+          Key(key), Pa_per_m, most_Pa_per_m);
+  const Key key(machine.shear_stiffness_Pa_per_m != infinity ? shear : normal);
   if (config.loading.solver == statics::StaticSolver::iterative)
     throw UserError("{} is solved by a factorisation; choose {} = direct or auto", key,
                     Key("loading.solver"));
@@ -488,6 +492,7 @@ void check_each_table(const Case& config) {
 void check_relations(const Case& config, const Document& document) {
   check_initial_state(config);
   check_each_table(config);
+  check_shear_speed(config);
   check_prestress(config, document);
   check_tilt(config);
   check_trigger_zone(config);

@@ -244,9 +244,31 @@ std::optional<std::string> key_of_short_name(const std::string& key) {
   return std::nullopt;
 }
 
+/// A key of the version before, and what became of it.
+struct RenamedKey {
+  const char* old_key;
+  const char* key;
+  const char* how;  ///< its number follows from the old one
+};
+constexpr std::array<RenamedKey, 4> renamed_keys = {
+    {{"loading.shear_speed_over_c_L", "loading.shear_speed_m_per_s",
+      "in m/s: the number times c_L, which slipfront info tells"},
+     {"loading.shear_stiffness_Pa", "loading.shear_stiffness_Pa_per_m",
+      "stress per metre: the number over plate.width_m, or over the pusher's length"},
+     {"loading.normal_stiffness_Pa", "loading.normal_stiffness_Pa_per_m",
+      "stress per metre: the number over plate.width_m"},
+     {"event.trigger_amount", "event.trigger_over_missing",
+      "with event.trigger_form = raised event.trigger_over_strength; the number stays"}}};
+
+void refuse_renamed(const std::string& place, const std::string& key) {
+  for (const auto& [old_key, now, how] : renamed_keys)
+    if (key == old_key) throw UserError("{}: {} is {} now, {}", place, key, now, how);
+}
+
 [[noreturn]] void throw_unknown_key(const Setting& setting, const std::vector<Entry>& entries,
                                     const Case& config) {
   const std::string& key = setting.key;
+  refuse_renamed(setting.place, key);
   if (const LawEntries* other = law_with(key, &law_of(config)))
     throw UserError("{}: {} belongs to the friction law {}, but {} is {}; remove the key or set the law",
                     setting.place, key, other->name, Key("friction.law"), law_of(config).name);
@@ -619,6 +641,7 @@ std::string schema_reference_of(const std::string& part) {
     return entry.key == part || table_of(entry.key) == part || leaf_of(entry.key) == part;
   });
   if (!text.empty()) return text;
+  refuse_renamed("slipfront: keys", part);
   std::vector<std::string> keys = tables_of(common_entries());
   for (const Entry& entry : common_entries()) keys.push_back(entry.key);
   for (const LawEntries& law : friction_laws())

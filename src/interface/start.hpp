@@ -24,6 +24,10 @@ struct Start {
   bool is_forced() const { return weakens_patch() && nucleation.form == NucleationForm::forced; }
   /// Whether a force begins it, with the trigger's ramp and duration.
   bool is_by_force() const { return pushes_edge() || overstresses(); }
+  /// The key in the case file of trigger.amount, where that is pushed.
+  const char* trigger_key() const {
+    return trigger.form == TriggerForm::raised ? "event.trigger_over_strength" : "event.trigger_over_missing";
+  }
   /// nucleation.form, of a patch that is weakened.
   const char* weakening_form() const { return is_forced() ? "forced" : "weakened"; }
 };

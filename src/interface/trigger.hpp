@@ -40,7 +40,7 @@ enum class Ramp {
 struct Trigger {
   TriggerForm form = TriggerForm::added;
   double zone_m = 5e-3;  ///< measured inward from the outermost node in contact
-  double amount = 5;     ///< see TriggerForm
+  double amount = 5;     ///< see TriggerForm: 1 just reaches the strength
   Ramp ramp = Ramp::linear;
   double ramp_s = 2.5e-6;        ///< rises from zero over this time
   double duration_s = infinity;  ///< taken away this long after its start

@@ -53,10 +53,10 @@ struct Mesh {
   std::vector<double> x_m;    ///< [nodes] along the interface, from the left edge
   std::vector<double> y_m;    ///< [nodes] up from the rigid plane; the gap of an interface node
   std::vector<Cell> cells;
-  std::vector<Node> interface_nodes;    ///< candidates for contact, x ascending, rounded corners included
-  std::vector<Node> far_edge_nodes;     ///< the loaded edge, left to right; none where it is free or absorbs
-  std::vector<double> far_edge_shares;  ///< of the edge's length, that belong to each of them
-  std::vector<Node> left_nodes;         ///< of the left side, upwards; none where a part lacks it
+  std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
+  std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
+  std::vector<double> far_edge_lengths_m;      ///< of the edge that belong to each of them
+  std::vector<Node> left_nodes;                ///< of the left side, upwards; none where a part lacks it
   std::vector<AbsorbingNode> absorbing_nodes;  ///< upwards, left to right
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.

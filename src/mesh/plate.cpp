@@ -413,7 +413,7 @@ class Maker {
       if (is_orphan(highest, i)) continue;
       const bool is_end = !is_periodic_ && (i == 0 || i == highest.grid.columns);
       mesh_.far_edge_nodes.push_back(highest.node(i, highest.grid.rows));
-      mesh_.far_edge_shares.push_back((is_end ? 0.5 * spacing_m : spacing_m) / plate_.width_m);
+      mesh_.far_edge_lengths_m.push_back(is_end ? 0.5 * spacing_m : spacing_m);
     }
   }
 

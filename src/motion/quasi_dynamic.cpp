@@ -102,7 +102,7 @@ bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
           "the time step of slow slip fell below rounding {:.6g} s after normal loading; choose a faster "
           "load ({}), "
           "or a smaller {}",
-          now_.time_s, Key("loading.shear_speed_over_c_L"), Key("sequence.inertia_slip_rate_m_per_s"));
+          now_.time_s, Key("loading.shear_speed_m_per_s"), Key("sequence.inertia_slip_rate_m_per_s"));
     const double remaining_s = end_s - now_.time_s;
     const bool is_last = next_dt_s_ >= remaining_s;
     const double taken_s = try_step(std::min(next_dt_s_, remaining_s));

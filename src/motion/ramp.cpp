@@ -21,9 +21,9 @@ constexpr std::int64_t renewal_interval = 1000;  // of the monitor as well
 std::int64_t max_steps(const Stepper& stepper, const RampSetup& setup) {
   const double steps = 2 * setup.expected_shear_m / (setup.top_speed_m_per_s * stepper.step_s());
   if (!(steps <= 2e12))
-    throw UserError("the ramp with {} = {:g} takes {:g} steps; choose a higher speed, or {} = direct",
-                    Key("loading.shear_speed_over_c_L"), setup.top_speed_m_per_s / setup.c_L_m_per_s,
-                    0.5 * steps, Key("loading.method"));
+    throw UserError("the ramp with {} = {:g} m/s takes {:g} steps; choose a higher speed, or {} = direct",
+                    Key("loading.shear_speed_m_per_s"), setup.top_speed_m_per_s, 0.5 * steps,
+                    Key("loading.method"));
   return static_cast<std::int64_t>(steps);
 }
 
@@ -69,7 +69,7 @@ class RampStates final : public Observer {
       throw UserError(
           "the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m, twice the "
           "one found directly; choose another {}, or {} = direct",
-          2 * setup_.expected_shear_m, Key("loading.shear_speed_over_c_L"), Key("loading.method"));
+          2 * setup_.expected_shear_m, Key("loading.shear_speed_m_per_s"), Key("loading.method"));
     return {};
   }
 

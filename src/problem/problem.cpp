@@ -20,8 +20,7 @@ Problem make_problem(const input::Case& config) {
   problem.bodies.push_back({config.plate, config.material, config.machine});
   if (has_base_body(config)) problem.bodies.push_back({base_plate(config), base_material(config)});
   problem.loading = config.loading;
-  problem.shear_speed_m_per_s =
-      config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
+  problem.shear_speed_m_per_s = config.loading.shear_speed_m_per_s;
   if (input::is_prestressed(config)) problem.prestress = config.prestress;
   problem.friction = {config.friction, config.friction_along_x, config.regularisation, config.contact,
                       config.tip_slip_rate_m_per_s};

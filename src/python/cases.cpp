@@ -22,6 +22,7 @@
 #include "problem/source.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/laws.hpp"
 #include "python/observers.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
@@ -140,9 +141,9 @@ void fill(interface::LawStates& states, const nb::list& given, const char* name)
 
 /// Functions of Python as a law with states.
 /// @param initial  with `states`, names and units of states of its own
-interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& evolve,
-                                const std::optional<nb::callable>& initial,
-                                const std::vector<std::pair<std::string, std::string>>& states) {
+interface::StateArrayLaw state_law_of(const nb::callable& mu_of, const nb::callable& evolve,
+                                      const std::optional<nb::callable>& initial,
+                                      const std::vector<std::pair<std::string, std::string>>& states) {
   using interface::LawStates;
   interface::StateArrayLaw law;
   law.coefficient = [&mu_of](std::span<const double> speed_m_per_s, const LawStates& now,
@@ -164,7 +165,8 @@ interface::StateArrayLaw law_of(const nb::callable& mu_of, const nb::callable& e
   return law;
 }
 
-/// A function of Python as a law over arrays. It is called without Python's lock.
+}  // namespace
+
 interface::ArrayLaw law_of(const nb::callable& mu_of) {
   return
       [&mu_of](std::span<const double> speed_m_per_s, std::span<const double> slip_m, std::span<double> mu) {
@@ -172,6 +174,8 @@ interface::ArrayLaw law_of(const nb::callable& mu_of) {
         fill(mu, mu_of(copied(speed_m_per_s), copied(slip_m)), "mu");
       };
 }
+
+namespace {
 
 /// By a law in Python. One thread: all of them would wait for Python's lock.
 void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::callable& mu_of,
@@ -183,7 +187,7 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
     if (!problem.friction.law.has_states())
       throw UserError("evolve: {} = {} has no state variable; choose rate_and_state_*", key,
                       problem.friction.law.name());
-    problem.friction.law.set_function(law_of(mu_of, *evolve, initial, states));
+    problem.friction.law.set_function(state_law_of(mu_of, *evolve, initial, states));
   } else {
     if (problem.friction.law.has_states())
       throw UserError("{} = {} has a state, which mu alone does not change; give evolve", key,

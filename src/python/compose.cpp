@@ -22,6 +22,7 @@
 #include "problem/contact.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/laws.hpp"
 #include "python/watcher.hpp"
 #include "run/loads.hpp"
 #include "statics/prestress.hpp"
@@ -85,11 +86,29 @@ struct Body {
 
 struct Friction {
   Keys keys;
-  Friction(const std::string& contact, const nb::kwargs& friction)
-      : keys(with_table({{"contact.algorithm", contact}}, "friction", friction)) {
+  std::optional<nb::callable> mu_of;  ///< a law in Python; slip_weakening stands for it in the keys
+  Friction(const std::string& contact, const nb::kwargs& friction) {
+    nb::dict given;
+    given.update(friction);
+    const nb::object law = given.contains("law") ? given["law"] : nb::none();
+    if (PyCallable_Check(law.ptr()) != 0) {
+      if (given.contains("mu_s")) throw UserError("mu_s follows from the law, as mu(0, 0); remove it");
+      const auto checked = nb::module_::import_("slipfront.running").attr("checked_law")(law);
+      mu_of = nb::cast<nb::callable>(checked[0]);
+      given["law"] = "slip_weakening";
+      given["mu_s"] = checked[1];
+      if (!given.contains("mu_k")) given["mu_k"] = checked[1];
+    }
+    keys = with_table({{"contact.algorithm", contact}}, "friction", nb::borrow<nb::kwargs>(given));
     input::parse_tables(keys);
   }
 };
+
+input::Case case_of(const Keys& keys, const Friction& friction) {
+  auto config = input::parse_tables(keys);
+  if (friction.mu_of) config.friction.set_function(law_of(*friction.mu_of));
+  return config;
+}
 
 /// Ends a run at a given step, or where it is interrupted.
 class Until final : public motion::Observer {
@@ -103,12 +122,12 @@ class Until final : public motion::Observer {
   }
 };
 
-/// A stepper that starts once and has a law of the registry, so that its arrays stay where they are.
+/// A stepper that starts once, so that its arrays stay where they are.
 class Stepper {
  public:
   Stepper(const Body& above, const Friction& friction, const Body* below, int threads, const nb::kwargs& time)
       : keys_(with_table(joined(above.keys, friction.keys), "time", time)),
-        problem_(problem::make_problem(input::parse_tables(keys_))),
+        problem_(problem::make_problem(case_of(keys_, friction))),
         above_(above),
         below_(below),
         x_m_(mesh::interface_x_m(above.mesh)),
@@ -209,6 +228,8 @@ class Stepper {
     if (problem_.friction.law.never_sticks() && !problem_.friction.tip_slip_rate_m_per_s)
       throw UserError("{} has no default here, where the pressure is not known yet; set it", tip);
     if (threads < 1) throw UserError("threads is {}; it must be at least 1", threads);
+    if (threads > 1 && problem_.friction.law.function() != nullptr)
+      throw UserError("threads is {}; with a law in Python it must be 1", threads);
     std::vector<motion::BodySource> bodies = {{above_.mesh, above_.material}};
     if (!below_) return bodies;
     bodies.push_back({below_->mesh, below_->material});
@@ -337,8 +358,11 @@ void bind_bodies(nb::module_& module) {
   nb::class_<Friction>(
       module, "Interface",
       "Contact and friction of an interface.\n\n"
-      "friction: keys of [friction], such as law=\"slip_weakening\" and its parameters. contact: "
-      "contact.algorithm, \"direct\" or \"predictor_corrector\". Raises CaseError.")
+      "friction: keys of [friction], such as law=\"slip_weakening\" and its parameters. law may be a "
+      "function "
+      "mu(slip_rate_m_per_s, slip_m), as that of run_with_law: its mu(0, 0) is mu_s, and mu_k that of nodes "
+      "weakened by strength_fraction, by default mu_s. contact: contact.algorithm, \"direct\" or "
+      "\"predictor_corrector\". Raises CaseError.")
       .def(nb::init<const std::string&, nb::kwargs>(), nb::kw_only(), "contact"_a = "direct", "friction"_a,
            nb::sig("def __init__(self, *, contact: object = 'direct', **friction: object) -> None"))
       .def("__repr__", [](const Friction& f) { return shown("interface", f.keys); });
@@ -364,7 +388,7 @@ void bind_compose(nb::module_& module) {
            "below"_a.none() = nb::none(), nb::kw_only(), "threads"_a = 1, "time"_a,
            nb::sig("def __init__(self, above: Body, interface: Interface, below: Body | None = None, *, "
                    "threads: int = 1, **time: object) -> None"),
-           nb::keep_alive<1, 2>(), nb::keep_alive<1, 4>())
+           nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
       .def("__repr__", &S::text)
       .def("start", &S::start, "t_Pa"_a, "p_Pa"_a, nb::kw_only(), "strength_fraction"_a = 1.0,
            "shear_speed_m_per_s"_a = 0.0,

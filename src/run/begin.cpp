@@ -39,7 +39,7 @@ Message idle_trigger(const Problem& problem, const statics::Equilibrium& state, 
   return Message(
       "{} = {:g} adds no traction in the trigger zone, where t is at least {:.4g} mu_s p before the event; "
       "choose more than {}",
-      Key("event.trigger_amount"), trigger.amount, least,
+      Key(problem.start.trigger_key()), trigger.amount, least,
       !added      ? Message("{:.4g}", least)
       : least < 1 ? Message("0")
                   : Message("{:.4g} with {} = raised", least, Key("event.trigger_form")));

@@ -165,7 +165,7 @@ void require_steady_friction(const Problem& problem, const mesh::Mesh& plate) {
 
 /// An event begins above the rate at which the load lets the interface slide, and below that of its fronts.
 void require_rate_of_events(const Problem& problem) {
-  const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_over_c_L");
+  const Key key("sequence.inertia_slip_rate_m_per_s"), speed("loading.shear_speed_m_per_s");
   const double rate_m_per_s = inertia_slip_rate_m_per_s(problem);
   const double most_m_per_s = std::min(radiation_slip_rate_m_per_s(problem), tip_slip_rate_m_per_s(problem));
   const double load_m_per_s = std::max(problem.path().fastest_m_per_s(), problem.shear_speed_m_per_s);

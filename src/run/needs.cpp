@@ -201,7 +201,8 @@ double slow_steps_of(const Problem& problem) {
   const auto path = problem.path();
   double compliance_m_per_Pa =
       problem.above().plate.height_m / solid::shear_modulus_Pa(problem.above().material) +
-      problem.width_m() / problem.above().machine.shear_stiffness_Pa;
+      problem.width_m() / (problem.above().machine.shear_stiffness_Pa_per_m *
+                           problem.above().machine.moved_length_m(problem.width_m()));
   if (problem.has_below())
     compliance_m_per_Pa += problem.below().plate.height_m / solid::shear_modulus_Pa(problem.below().material);
   const double p_Pa = nominal_pressure_Pa(problem);
@@ -211,7 +212,8 @@ double slow_steps_of(const Problem& problem) {
   // Stiffness against waves of two elements.
   const double stiffness_Pa_per_m =
       0.5 * std::numbers::pi * stability::modulus_Pa(materials_of(problem)) / problem.element_size_m();
-  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * interface::direct_effect(problem.friction.law) * p_Pa);
+  return of_changes +
+         slip_m * stiffness_Pa_per_m / (of_pair * interface::direct_effect(problem.friction.law) * p_Pa);
 }
 
 /// The existing folder in which `folder` is or will be made.
@@ -315,8 +317,8 @@ Needs needs(const Problem& problem, const Size& size, const Holder& holder) {
   if (problem.loading.method == statics::LoadingMethod::ramp)
     n.ramp_steps =
         countable(std::ceil(critical_shear_m(problem) / (problem.shear_speed_m_per_s * size.step_s)),
-                  Message("the ramp with {} = {:g}", Key("loading.shear_speed_over_c_L"),
-                          problem.loading.shear_speed_over_c_L),
+                  Message("the ramp with {} = {:g} m/s", Key("loading.shear_speed_m_per_s"),
+                          problem.loading.shear_speed_m_per_s),
                   Message("a higher speed, or {} = direct", Key("loading.method")));
   n.history_rows = rows_of(end_s, output.history_interval_s, size.step_s);
   n.snapshots = static_cast<double>(snapshot_plan(problem, size.step_s).times_s.size());

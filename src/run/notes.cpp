@@ -57,6 +57,18 @@ void add_odd_units(const std::string& table, const solid::Material& m, double wi
                     table, m.stiffness_damping_s, damping_length_m, width_m));
 }
 
+/// Sizes that no laboratory sample has, and no fault.
+void add_odd_sizes(const Problem& problem, Notes& notes) {
+  constexpr double largest_sample_m = 20, smallest_fault_m = 1000;
+  const auto add = [&](const char* key, double size_m) {
+    if (size_m > largest_sample_m && size_m < smallest_fault_m)
+      add_note(key, size_m, "beyond samples of a laboratory, below faults; is it in m?", notes);
+  };
+  add("plate.width_m", problem.width_m());
+  add("plate.height_m", problem.above().plate.height_m);
+  if (problem.has_below()) add("base.height_m", problem.below().plate.height_m);
+}
+
 /// Numbers of the interface that may be in another unit than the key's.
 void add_odd_units_of_friction(const Problem& problem, Notes& notes) {
   for (const auto& parameter : description_of(problem.friction.law).parameters) {
@@ -175,8 +187,8 @@ void add_sequence(const Problem& problem, Notes& notes) {
         "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: between events it is "
         "taken for static, and in them it works; are {} slow enough?",
         load_m_per_s, wave_Pa / strength_Pa,
-        problem.sequence.path.times_s.empty() ? "loading.shear_speed_over_c_L"
-                                              : "sequence.times_s and loading.shear_speed_over_c_L"));
+        problem.sequence.path.times_s.empty() ? "loading.shear_speed_m_per_s"
+                                              : "sequence.times_s and loading.shear_speed_m_per_s"));
   if (problem.sequence.healing_per_e_fold > most_healing)
     add_note("sequence.healing_per_e_fold", problem.sequence.healing_per_e_fold,
              "surfaces gain some 0.01 in mu_s an e-fold of time at rest; is it in per cent?", notes);
@@ -235,7 +247,7 @@ void add_stiff_machine(const Problem& problem, Notes& notes) {
   double yields_m_per_Pa = problem.above().plate.height_m / solid::shear_modulus_Pa(problem.above().material);
   if (problem.has_below())
     yields_m_per_Pa += problem.below().plate.height_m / solid::shear_modulus_Pa(problem.below().material);
-  yields_m_per_Pa += problem.width_m() / machine.shear_stiffness_Pa;
+  yields_m_per_Pa += 1 / machine.shear_stiffness_Pa_per_m;
   const double ratio = 1 / (yields_m_per_Pa * critical_Pa_per_m);
   if (critical_Pa_per_m > 0 && ratio > 1)
     notes.push_back(
@@ -318,6 +330,7 @@ std::vector<std::string> notes_of_case(const Problem& problem, const RuptureOutl
                                 problem.fronts.l_star_m));
   for (const auto& body : problem.bodies)
     add_odd_units(&body == &problem.above() ? "material" : "base", body.material, problem.width_m(), notes);
+  add_odd_sizes(problem, notes);
   add_odd_units_of_friction(problem, notes);
   add_odd_pressures(problem, notes);
   add_lengths(problem, notes);

@@ -142,8 +142,8 @@ std::string doubt_of_beginning(const Problem& problem, const Inside& inside) {
     return fmt::format("event.kind = none, and {} is below {} at all nodes inside", inside.t(),
                        inside.strength());
   if (problem.start.pushes_edge() && problem.start.trigger.amount < 1)
-    return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below {}",
-                       problem.start.trigger.amount, inside.strength());
+    return fmt::format("{} = {:g} leaves the traction of the trigger zone below {}; 1 just reaches it",
+                       problem.start.trigger_key(), problem.start.trigger.amount, inside.strength());
   return problem.start.overstresses() ? doubt_of_overstress(problem, inside) : std::string();
 }
 

@@ -49,7 +49,7 @@ std::string contact_warning(const statics::Equilibrium& state) {
 std::string ramp_warning(const std::optional<motion::Ramp>& ramp) {
   if (!ramp || !ramp->passed_margin_in_a_step()) return {};
   return "the ramp brings t/p from below (1 - loading.critical_margin) mu_s to slip within a step: the state "
-         "in which triggered events begin is the critical one; choose a lower loading.shear_speed_over_c_L";
+         "in which triggered events begin is the critical one; choose a lower loading.shear_speed_m_per_s";
 }
 
 }  // namespace

@@ -207,8 +207,9 @@ void Sequence::require_stands(double time_s, double shear_m, const std::vector<d
         "lower {} or a larger {}",
         at, acts_m, Key("plate.height_m"), Key("plate.width_m"));
   const double most_m = std::max(plate.width_m, plate.height_m);
-  const double edge_m =
-      shear_m - rest_.shear_m - rest_.moved_m - shear_force / problem_.above().machine.shear_stiffness_Pa;
+  const double stiffness_Pa = problem_.above().machine.shear_stiffness_Pa_per_m *
+                              problem_.above().machine.moved_length_m(plate.width_m);
+  const double edge_m = shear_m - rest_.shear_m - rest_.moved_m - shear_force / stiffness_Pa;
   if (std::isinf(path_.end_s()) && !(edge_m <= most_m))
     throw UserError(
         "{} no event has begun, and the loaded edge has moved by more than the plate's size, {:g} m: "
@@ -267,7 +268,7 @@ void Sequence::heal_to_critical() {
   }
   if (shear_m < end_m)
     throw UserError("{} heals the interface faster than the load grows; reduce it, or raise {}",
-                    Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_over_c_L"));
+                    Key("sequence.healing_per_e_fold"), Key("loading.shear_speed_m_per_s"));
   heal_until(path_.end_s());
 }
 
@@ -383,7 +384,8 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
           "{:.6g} s after normal loading the interface slips steadily, at {:.3g} m/s: no event comes; give "
           "{}, or "
           "a softer machine ({})",
-          state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"), Key("loading.shear_stiffness_Pa"));
+          state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"),
+          Key("loading.shear_stiffness_Pa_per_m"));
     if ((slow_->n_steps() - n_before) % record::steps_per_slow_row == 0 &&
         (n_rows < record::all_slow_rows || has_changed()))
       give_row();
@@ -584,21 +586,20 @@ void Sequence::serialize(StateArchive& archive) {
            std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
   const std::size_t n_rows = 1 + 3 * events_.size() + (is_in_event() ? 1 : 0);
-  require_possible(rest_.contact.size() == n_at_rest &&
-                       std::ranges::all_of(rest_.contact,
-                                           [](auto contact) { return contact <= statics::Contact::open; }) &&
-                       is_of(rest_.u_x_m, n_at_rest) &&
-                       rest_.law_states.size() == (slow_ ? problem_.friction.law.states().size() : 0) &&
-                       std::ranges::all_of(rest_.law_states,
-                                           [&](const auto& values) { return is_of(values, n); }) &&
-                       is_of(rest_.rests_since_s, problem_.heals() ? n : 0) &&
-                       is_of(u_begins_x_m_, is_in_event() ? n : 0) && n_rows_at_rest_ <= loading_.size() &&
-                       std::isfinite(rest_.shear_m) && std::isfinite(rest_.time_s) &&
-                       std::isfinite(rest_.moved_m) &&
-                       (slow_ ? loading_.size() >= n_rows : loading_.size() == n_rows) &&
-                       std::ranges::all_of(
-                           loading_, [](const LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),
-                   "a sequence");
+  require_possible(
+      rest_.contact.size() == n_at_rest &&
+          std::ranges::all_of(rest_.contact,
+                              [](auto contact) { return contact <= statics::Contact::open; }) &&
+          is_of(rest_.u_x_m, n_at_rest) &&
+          rest_.law_states.size() == (slow_ ? problem_.friction.law.states().size() : 0) &&
+          std::ranges::all_of(rest_.law_states, [&](const auto& values) { return is_of(values, n); }) &&
+          is_of(rest_.rests_since_s, problem_.heals() ? n : 0) &&
+          is_of(u_begins_x_m_, is_in_event() ? n : 0) && n_rows_at_rest_ <= loading_.size() &&
+          std::isfinite(rest_.shear_m) && std::isfinite(rest_.time_s) && std::isfinite(rest_.moved_m) &&
+          (slow_ ? loading_.size() >= n_rows : loading_.size() == n_rows) &&
+          std::ranges::all_of(loading_,
+                              [](const LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),
+      "a sequence");
   if (!events_.empty()) equilibrate();
 }
 

@@ -355,11 +355,11 @@ UserError Session::does_not_rest(const Result& result) const {
                ? UserError(
                      "{}, and slip does not slow down: the load drives it on; choose a slower one ({}), or "
                      "press harder; {}",
-                     what, Key("loading.shear_speed_over_c_L"), what_was_kept(folder_))
+                     what, Key("loading.shear_speed_m_per_s"), what_was_kept(folder_))
                : UserError(
                      "{}, and slip does not slow down: the loads drive it on, as dead loads or a soft "
                      "machine do; choose others ({}, {}), or a later {}; {}",
-                     what, Key("loading.shear_stiffness_Pa"), Key("loading.normal_stiffness_Pa"),
+                     what, Key("loading.shear_stiffness_Pa_per_m"), Key("loading.normal_stiffness_Pa_per_m"),
                      Key("time.end_s"), what_was_kept(folder_));
   return UserError("{}; choose a later {}, a larger {}, or edges that absorb; {}", what, Key("time.end_s"),
                    Key("material.stiffness_damping_s"), what_was_kept(folder_));

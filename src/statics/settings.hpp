@@ -37,7 +37,7 @@ struct Loading {
   TopEdge top_during_tilt = TopEdge::held;
   LoadingMethod method = LoadingMethod::direct;
   StaticSolver solver = StaticSolver::automatic;
-  double shear_speed_over_c_L = 1e-6;  ///< v_x / c_L of the top edge
+  double shear_speed_m_per_s = 1.5844024039000516e-3;  ///< v_x of the top edge: 1e-6 c_L of PMMA
   double edge_margin_m = 5e-3;  ///< "inside" the interface leaves out this much at each end of the contact
   double critical_margin =
       1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)

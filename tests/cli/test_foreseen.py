@@ -18,10 +18,10 @@ def test_a_history_too_large_for_the_disk_is_refused(program, coarse, tmp_path):
 
 
 def test_overload_is_not_blamed_on_the_step(program, coarse):
-    trigger = settings({"event.kind": "right", "event.trigger_amount": 1e6})
+    trigger = settings({"event.kind": "right", "event.trigger_over_missing": 1e6})
     message = one_line(program("run", coarse, "-o", "out", "-q", *trigger), 3)
     assert "the work of the loads accounts for the energy" in message
-    assert "event.trigger_amount" in message and "step_factor" not in message
+    assert "event.trigger_over_missing" in message and "step_factor" not in message
 
 
 PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": "none"}
@@ -72,11 +72,11 @@ def random_case(seed):
         case["prestress.t_Pa"] = r.choice([0, r.uniform(-1, 1) * p, r.uniform(0, 0.6) * p])
         case["plate.sides"] = sides = r.choice(["free", "periodic", "absorbing"])
         case["plate.top"] = r.choice(["loaded", "free", "absorbing"])
-        case["loading.shear_speed_over_c_L"] = r.choice([0, power(-18, -12), power(-12, -4)])
+        case["loading.shear_speed_m_per_s"] = r.choice([0, power(-15, -9), power(-9, -1)])
     else:
         tilt = power(*r.choice([(-12, -4), (-5, -4)]))
         case |= {"loading.tilt_left_m": tilt, "loading.tilt_right_m": tilt * r.uniform(0.3, 1)}
-        case |= {"loading.shear_speed_over_c_L": power(-12, -6), "loading.edge_margin_m": 4e-3}
+        case |= {"loading.shear_speed_m_per_s": power(-9, -3), "loading.edge_margin_m": 4e-3}
     case["material.plane"] = r.choice(["stress", "strain"])
     case["material.poissons_ratio"] = r.uniform(-0.2, 0.45)
     h_over_c_s = 2e-3 / 1500
@@ -100,7 +100,10 @@ def random_case(seed):
         kinds.append("spontaneous")
     case["event.kind"] = kind = r.choice(kinds)
     if kind in ("left", "right"):
-        case |= {"event.trigger_zone_m": r.choice([2e-3, 8e-3]), "event.trigger_amount": r.uniform(0, 5)}
+        case |= {
+            "event.trigger_zone_m": r.choice([2e-3, 8e-3]),
+            "event.trigger_over_missing": r.uniform(0, 5),
+        }
         case["event.trigger_ramp_s"] = r.choice([0, 5, 50]) * h_over_c_s
     if kind == "nucleation":
         case["nucleation.form"] = r.choice(["weakened", "overstress"])

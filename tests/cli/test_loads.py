@@ -130,20 +130,20 @@ def test_info_of_forces_is_of_the_tractions_that_they_give(program, case, tmp_pa
 
 
 def test_the_upper_edge_moves_during_the_event_unless_it_is_held(program, case, tmp_path):
-    held = sets("loading.shear_speed_over_c_L=0")
+    held = sets("loading.shear_speed_m_per_s=0")
     for settings, moves in (((), True), (held, False)):
         info = require_done(program("info", case, *settings)).stdout
-        assert bool(re.search(r"upper edge during the event +moves to \+x at 0\.00158 m/s", info)) == moves
+        assert bool(re.search(r"upper edge during the event +moves to \+x at 1\.58 mm/s", info)) == moves
         run = require_done(program("run", case, "-o", f"{moves}", *settings)).stdout
-        assert ("the upper edge moves to +x at 0.00158 m/s during the event" in run) == moves
+        assert ("the upper edge moves to +x at 1.58 mm/s during the event" in run) == moves
         table = np.genfromtxt(tmp_path / f"{moves}/energy.csv", delimiter=",", names=True, comments="#")
         assert bool(table["top_work_J_per_m"][-1]) == moves
 
 
 @pytest.mark.parametrize("of_motion", ["loading.method=ramp", "event.kind=spontaneous"])
 def test_an_edge_that_is_held_brings_nothing_to_slip(program, coarse, of_motion):
-    line = refusal(program("validate", coarse, *sets("loading.shear_speed_over_c_L=0", of_motion)))
-    assert "loading.shear_speed_over_c_L is 0; that holds the top edge still" in line
+    line = refusal(program("validate", coarse, *sets("loading.shear_speed_m_per_s=0", of_motion)))
+    assert "loading.shear_speed_m_per_s is 0; that holds the top edge still" in line
 
 
 def test_a_place_inside_beyond_its_strength_is_told(program, case):

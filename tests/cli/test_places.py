@@ -76,11 +76,15 @@ def test_the_line_is_that_of_the_key_at_fault(program, write_case, tmp_path, tex
 # And what the message says.
 LATE = [
     (
-        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\ntrigger_amount = 1e-3 # here\n',
+        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\ntrigger_over_strength = 1e-3 # here\n',
         None,
-        ["event.trigger_amount = 0.001 adds no traction", "choose more than"],
+        ["event.trigger_over_strength = 0.001 adds no traction", "choose more than"],
     ),
-    ('mu_s = 1.3\n[event]\nkind = "right"\ntrigger_amount = 1e-3\n', "event.trigger_form=raised", []),
+    (
+        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\n',
+        "event.trigger_over_strength=1e-3",
+        [],
+    ),
     # At this strength slip spreads from the edges before t/p inside reaches it.
     ("mu_s = 100 # here\n[loading]\nedge_margin_m = 5e-3\n", None, ["mu_s"]),
     # The peak t/p of the tilted plate is about 0.5.

@@ -148,19 +148,19 @@ def test_resolved_case_runs_to_the_same_fronts(program, tmp_path):
 
 
 # Of one step of the ramp over the critical shear: how far it may go beyond.
-@pytest.mark.parametrize(("speed", "beyond"), [(1e-3, 0.02), (1e-4, 0.002)])
+@pytest.mark.parametrize(("speed", "beyond"), [(1.6, 0.02), (0.16, 0.002)])
 def test_a_fast_ramp_ends_where_slip_begins_inside(program, coarse, tmp_path, speed, beyond):
     """In a step the node nearest to slip passes from below mu_s p to slip, and weakens at once."""
     case = sets("plate.element_size_m=4e-3", "loading.method=ramp", "event.kind=spontaneous")
-    case += sets(f"loading.shear_speed_over_c_L={speed}")
+    case += sets(f"loading.shear_speed_m_per_s={speed}")
     result = require_done(program("run", coarse, "-o", "out", *case))
     ramp = run_json(tmp_path / "out")["statics"]["ramp"]
     assert 0 <= ramp["relative_to_direct"] < beyond
     assert ramp["onsets_inside"] == 1
     assert "the ramp brings t/p inside to mu_s at" in result.stdout
     assert f"{ramp['onsets_before_critical'] - 1} at the edges, 1 inside" in result.stdout
-    assert ("choose a lower loading.shear_speed_over_c_L" in result.stdout) == (speed == 1e-3)
-    assert ("slip at mu_s p, 1 of them within" in result.stdout) == (speed == 1e-3)
+    assert ("choose a lower loading.shear_speed_m_per_s" in result.stdout) == (speed == 1.6)
+    assert ("slip at mu_s p, 1 of them within" in result.stdout) == (speed == 1.6)
 
 
 def test_blow_up_keeps_what_there_is(program, coarse, tmp_path):
@@ -338,7 +338,7 @@ def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
     (tmp_path / "cases/table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.3e6,5e6\n")
     write_case(PRESTRESSED, "cases/c.toml")
     run = require_done(program("run", "cases/c.toml", "-o", "out"))
-    assert "prescribed tractions, t/p up to 0.4596 at x = 0.099 m" in run.stdout
+    assert "prescribed tractions, t/p up to 0.4596 at x = 99 mm" in run.stdout
     static = rows_of(tmp_path / "out/static.csv")
     assert len(static) == 100
     assert float(static[50]["t_s_Pa"]) == pytest.approx(2.2e6, rel=1e-12)

@@ -89,7 +89,9 @@ def test_a_load_without_end_that_brings_steady_sliding_ends(program, write_case)
 
 
 def test_an_event_that_dead_loads_drive_on_is_told_from_one_that_needs_time(program, write_case):
-    dead = sets("loading.shear_stiffness_Pa=1e3", "loading.shear_speed_over_c_L=1e-9", "time.end_s=2e-3")
+    dead = sets(
+        "loading.shear_stiffness_Pa_per_m=5e3", "loading.shear_speed_m_per_s=1.6e-6", "time.end_s=2e-3"
+    )
     line = refusal(program("run", write_case(STICKING), *dead, "-o", "out", "-q"))
     assert "event 1 has not come to rest" in line and "slip does not slow down: the loads drive it on" in line
     early = sets("time.end_s=1.5e-4", "time.quiet_s=1.2e-4")
@@ -101,7 +103,7 @@ def test_an_event_that_dead_loads_drive_on_is_told_from_one_that_needs_time(prog
     "changes, told",
     [
         (["friction.V_i_m_per_s=1"], "no slow slip comes before an event; choose a smaller one, or press"),
-        (["loading.shear_speed_over_c_L=0.01"], "the load moves at"),
+        (["loading.shear_speed_m_per_s=47"], "the load moves at"),
         (["friction.theta_i_s=1e-15"], "normal loading alone lets the interface slip at"),
         (["sequence.times_s=[1,2]", "sequence.shears_m=[1e5,1e6]"], "it must be slower than c_L"),
     ],
@@ -226,7 +228,9 @@ def test_events_count_by_their_longest_patch(program, tmp_path):
 
 def test_events_of_a_block_that_slips_as_one_count(program, tmp_path):
     """On a soft machine it does though it is shorter than the nucleation length."""
-    soft = sets("loading.shear_stiffness_Pa=2e10", "friction.d_c_m=4e-6", "material.stiffness_damping_s=4e-6")
+    soft = sets(
+        "loading.shear_stiffness_Pa_per_m=5e10", "friction.d_c_m=4e-6", "material.stiffness_damping_s=4e-6"
+    )
     result = program("run", *STICK_SLIP, *soft, *sets("time.end_s=0.03"), "-o", "out")
     assert "\n2 of them longer than the nucleation length, or global\n" in require_done(result).stdout
     for event in rows_of(tmp_path / "out" / "events.csv"):
@@ -251,7 +255,7 @@ FAST = ["sequence.times_s=[1e-6]", "sequence.shears_m=[20e-6]"]
     [
         (STICKING, ["time.quiet_s=1e-6"], "time.quiet_s = 1e-06 s is far below 4 H/c_S"),
         (STICKING, FAST, "the load moves at up to 20 m/s"),
-        (STICKING, ["loading.shear_speed_over_c_L=1e-4"], "the load moves at up to"),
+        (STICKING, ["loading.shear_speed_m_per_s=0.16"], "the load moves at up to"),
         (STICKING, ["sequence.healing_per_e_fold=10"], "sequence.healing_per_e_fold = 10: "),
         (STICKING, ["material.poissons_ratio=-0.999"], "material.poissons_ratio = -0.999: "),
         (STICKING, ["plate.element_size_m=5e-3", *PUSHED], "the pusher covers 95 % of the side"),

@@ -37,7 +37,7 @@ def draw(dice):
         choose("plate.top", "loaded", "free", "absorbing")
         put("prestress.p_Pa", 5e6)
         put("prestress.t_Pa", dice.uniform(-2.9e6, 2.9e6))
-        put("loading.shear_speed_over_c_L", dice.choice((0.0, 1e-6, 1e-4)))
+        put("loading.shear_speed_m_per_s", dice.choice((0.0, 1.6e-3, 0.16)))
         kind = choose("event.kind", "none", "nucleation", "nucleation", "left", "right")
     else:
         choose("loading.top_during_tilt", "held", "free")
@@ -75,7 +75,7 @@ def draw(dice):
         put("nucleation.half_length_m", dice.uniform(5e-3, 2e-2))
         put("nucleation.overstress_Pa", dice.uniform(-4e6, 4e6))
     if kind in ("left", "right"):
-        put("event.trigger_amount", dice.uniform(0.5, 6))
+        put("event.trigger_over_missing", dice.uniform(0.5, 6))
     if kind not in ("none", "spontaneous") and dice.random() < 0.3:
         put("event.trigger_duration_s", dice.uniform(5e-6, 5e-5))
     put("time.step_factor", dice.uniform(0.3, 0.95))

@@ -113,7 +113,7 @@ TEST(CaseText, AWrongTableIsNamedWithThePlaceOfItsKey) {
 const std::string prestressed = R"(
 plate.corner = "none"
 loading.method = "prestress"
-loading.shear_speed_over_c_L = 1e-6
+loading.shear_speed_m_per_s = 1e-6
 prestress.t_Pa = 1e6
 prestress.p_Pa = 5e6
 [event]

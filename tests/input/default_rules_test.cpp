@@ -63,6 +63,23 @@ TEST(DefaultRules, TimesScaleWithTheWavesOfTheSlowerBody) {
   EXPECT_EQ(parsed(on_pmma).time.end_s, by_default.time.end_s);
 }
 
+TEST(DefaultRules, DampingFollowsTheMeshAndIsMoreWhereBodiesDiffer) {
+  // 2 % of a process zone of three elements.
+  const auto over_h = [](const Case& c) {
+    return c.material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(c.material) /
+           c.plate.element_size_m;
+  };
+  for (const char* text :
+       {"", "plate.width_m = 0.4", "plate.element_size_m = 1e-3", "material.youngs_modulus_Pa = 50e9"})
+    EXPECT_NEAR(over_h(parsed(text)), 0.06, 1e-5) << text;
+  const Case rigid = parsed("base.kind = 'rigid'"), unlike = parsed("base.youngs_modulus_Pa = 1e9");
+  EXPECT_DOUBLE_EQ(rigid.material.stiffness_damping_s,
+                   0.1 * rigid.plate.element_size_m / solid::shear_speed_m_per_s(rigid.material));
+  EXPECT_DOUBLE_EQ(unlike.material.stiffness_damping_s,
+                   0.1 * unlike.plate.element_size_m / solid::shear_speed_m_per_s(base_material(unlike)));
+  EXPECT_EQ(unlike.base.material.stiffness_damping_s, unlike.material.stiffness_damping_s);
+}
+
 TEST(DefaultRules, AKeyThatIsSetKeepsItsValue) {
   const Case c = parsed("[plate]\nwidth_m = 0.4\n[time]\nend_s = 1e-4\n", {{"fronts.arrest_time_s", "3e-5"}});
   EXPECT_EQ(c.time.end_s, 1e-4);
@@ -78,8 +95,8 @@ TEST(DefaultRules, PrescribedTractionsAreAllTheLoad) {
   const std::string text =
       "[plate]\ncorner = 'none'\n[loading]\nmethod = 'prestress'\n[prestress]\nt_Pa = 1\np_Pa = 1\n"
       "[event]\nkind = 'nucleation'\n";
-  EXPECT_EQ(parsed(text).loading.shear_speed_over_c_L, 0);
-  EXPECT_EQ(parsed(text, {{"loading.shear_speed_over_c_L", "1e-6"}}).loading.shear_speed_over_c_L, 1e-6);
+  EXPECT_EQ(parsed(text).loading.shear_speed_m_per_s, 0);
+  EXPECT_EQ(parsed(text, {{"loading.shear_speed_m_per_s", "1e-6"}}).loading.shear_speed_m_per_s, 1e-6);
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ const Contradiction wrong_cases[] = {
     {"Element", "[plate]\nwidth_m = 3\n\nelement_size_m = 0.2 # here\n"},
     {"ElementOfALowerPlate", "[plate]\nelement_size_m = 1e-2\n", {{"plate.height_m", "1e-3"}}},
     // Loading
-    {"TopHeld", "[loading]\nmethod = \"ramp\"\nshear_speed_over_c_L = 0 # here\n"},
-    {"TopHeldByTheMethod", uniform_tractions + "shear_speed_over_c_L = 0\n", {{"loading.method", "direct"}}},
+    {"TopHeld", "[loading]\nmethod = \"ramp\"\nshear_speed_m_per_s = 0 # here\n"},
+    {"TopHeldByTheMethod", uniform_tractions + "shear_speed_m_per_s = 0\n", {{"loading.method", "direct"}}},
     {"NoTractions", "[loading]\nmethod = \"prestress\" # here\n[prestress]\nt_Pa = 1e6\n"},
     {"Relief", at_rest + "[plate]\ncorner = \"relief\" # here\n"},
     {"SpontaneousEvent", uniform_tractions + "[event]\nkind = \"spontaneous\" # here\n" + square},

@@ -115,13 +115,13 @@ const std::string changed_text =
     " bottom = 'free', youngs_modulus_Pa = 6.7e10, poissons_ratio = 0.125, density_kg_per_m3 = 7.8e3,"
     " stiffness_damping_s = 3e-9}\n"
     "loading = {tilt_left_m = 1e-4, tilt_right_m = 3e-4, top_during_tilt = 'free', method = 'ramp',"
-    " solver = 'direct', shear_speed_over_c_L = 1e-5, edge_margin_m = 0.02, critical_margin = 3e-4}\n"
+    " solver = 'direct', shear_speed_m_per_s = 1e-5, edge_margin_m = 0.02, critical_margin = 3e-4}\n"
     "friction = {law = 'velocity_weakening', mu_s = 1.25, mu_k = 0.75, alpha_m2_per_s2 = 0.3,"
     " regularisation = 'strength', relaxation_length_m = 4e-6, relaxation_slip_rate_m_per_s = 0.5,"
     " relaxation_time_s = 2e-6, file = 'table.csv', between_rows = 'stepwise', random_key = 'mu_k',"
     " random_share = 0.05, random_correlation_length_m = 6e-3, random_seed = 7}\n"
     "contact.algorithm = 'predictor_corrector'\n"
-    "event = {kind = 'right', trigger_form = 'raised', trigger_zone_m = 7e-3, trigger_amount = 2.5,"
+    "event = {kind = 'right', trigger_form = 'raised', trigger_zone_m = 7e-3, trigger_over_strength = 2.5,"
     " trigger_ramp = 'smooth', trigger_ramp_s = 0, trigger_duration_s = 3e-5}\n"
     "time = {step_factor = 1.5, allow_unstable = true, stepper = 'plain', precision = 'single', "
     "interface_rows = 7,"
@@ -175,7 +175,7 @@ Case changed_prestress() {
   c.plate.corner = mesh::Corner::none;
   c.loading = {};
   c.loading.method = statics::LoadingMethod::prestress;
-  c.loading.shear_speed_over_c_L = 0;
+  c.loading.shear_speed_m_per_s = 0;
   c.prestress = {1e6 / 3, 2e6 / 7, "", {}, 3e8, -2e8};
   c.event = interface::EventKind::nucleation;
   c.trigger = {.ramp_s = 0, .duration_s = 3e-5};
@@ -251,7 +251,7 @@ TEST(Schema, WhatIsNotSetTogetherReadsBackFromToml) {
   fillet.plate.fillet_radius_m = 3e-3;
   pushed.machine.pusher = {0.01, 0.02};
   on_machine.machine = {2e9, 0};
-  sequence.loading.shear_speed_over_c_L = 1e-8;
+  sequence.loading.shear_speed_m_per_s = 1e-8;
   sequence.time.end_s = 1e-2;
   sequence.time.quiet_s = 1e-3;
   sequence.sequence = {7, 400, true, {{2, 3}, {1e-6, 1e-6}}, 0.02, 3, {}};
@@ -260,7 +260,7 @@ TEST(Schema, WhatIsNotSetTogetherReadsBackFromToml) {
   slow.sequence = {7, 400, true, {}, 0, 1, 2e-3};
   for (const Case& c : {relief, fillet, pushed, on_machine, sequence, slow})
     expect_equal(parsed(to_toml(c)), c);
-  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa = inf").machine.is_rigid());
+  EXPECT_TRUE(parsed("loading.normal_stiffness_Pa_per_m = inf").machine.is_rigid());
 }
 
 TEST(Schema, LoadingPathsRiseInTime) {
@@ -300,11 +300,12 @@ TEST(Schema, PushersNeedASideThatIsFreeAndNodesUnderThem) {
 }
 
 TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {
-  const std::string soft = "loading.shear_stiffness_Pa = 1e9\n", dead = "loading.normal_stiffness_Pa = 0\n";
-  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa = 0"), HasSubstr("greater than 0"));
-  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa = -1"), HasSubstr("at least 0"));
-  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa = 1e14"), HasSubstr("for a rigid machine"));
-  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa = 1e14"), HasSubstr("for a rigid machine"));
+  const std::string soft = "loading.shear_stiffness_Pa_per_m = 1e9\n",
+                    dead = "loading.normal_stiffness_Pa_per_m = 0\n";
+  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa_per_m = 0"), HasSubstr("greater than 0"));
+  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa_per_m = -1"), HasSubstr("at least 0"));
+  EXPECT_THAT(parse_error("loading.shear_stiffness_Pa_per_m = 1e14"), HasSubstr("for a rigid machine"));
+  EXPECT_THAT(parse_error("loading.normal_stiffness_Pa_per_m = 1e14"), HasSubstr("for a rigid machine"));
   for (const auto& machine : {soft, dead}) {
     EXPECT_THAT(parse_error(machine + "loading.solver = 'iterative'"), HasSubstr("loading.solver = direct"));
     EXPECT_THAT(parse_error(machine + "time.precision = 'single'"), HasSubstr("time.precision = double"));
@@ -315,7 +316,7 @@ TEST(Schema, MachinesNeedASolverThatKnowsThemAndElementsThatAreStiffer) {
 
 TEST(Schema, DefaultsOfASequenceLetEventsComeToRestBeforeTheEdgeMovesOn) {
   const Case single = parsed(""), sequence = parsed("sequence.max_events = 2");
-  EXPECT_EQ(sequence.loading.shear_speed_over_c_L, 1e-9);
+  EXPECT_DOUBLE_EQ(sequence.loading.shear_speed_m_per_s, 1e-3 * single.loading.shear_speed_m_per_s);
   EXPECT_DOUBLE_EQ(sequence.time.end_s, 10 * single.time.end_s);
   EXPECT_DOUBLE_EQ(sequence.time.quiet_s,
                    4 * single.plate.height_m / solid::shear_speed_m_per_s(single.material));
@@ -392,16 +393,25 @@ TEST(Schema, ABodyBelowHasItsKeys) {
   EXPECT_TRUE(members(rigid.base) == members(expected));
 }
 
+TEST(Schema, TheFormOfATriggerDecidesWhatItsAmountIsOver) {
+  const std::string at_left = "[event]\nkind = \"left\"\n", raised = at_left + "trigger_form = \"raised\"\n";
+  EXPECT_EQ(parsed(at_left + "trigger_over_missing = 7\n").trigger.amount, 7);
+  EXPECT_EQ(parsed(raised + "trigger_over_strength = 7\n").trigger.amount, 7);
+  expect_message(parse_error(raised + "trigger_over_missing = 7\n"),
+                 "c.toml:4: event.trigger_over_missing applies only with", "event.trigger_form = added");
+  expect_message(parse_error(at_left + "trigger_amount = 7\n"),
+                 "c.toml:3: event.trigger_amount is event.trigger_over_missing now", "trigger_over_strength");
+}
+
 TEST(Schema, AWeakenedTriggerHasNoAmount) {
-  const std::string pushed = "[event]\nkind = \"left\"\ntrigger_amount = 7\n";
-  std::vector<Override> overrides = {{"event.trigger_form", "raised"}};
-  EXPECT_EQ(parsed(pushed, overrides).trigger.amount, 7);
-  overrides[0].second = "weakened";
+  const std::string pushed = "[event]\nkind = \"left\"\ntrigger_over_missing = 7\n";
+  EXPECT_EQ(parsed(pushed).trigger.amount, 7);
+  std::vector<Override> overrides = {{"event.trigger_form", "weakened"}};
   EXPECT_EQ(parsed(pushed, overrides).trigger.form, interface::TriggerForm::weakened);
   EXPECT_EQ(parsed(pushed, overrides).trigger.amount, interface::Trigger{}.amount);
-  overrides.push_back({"event.trigger_amount", "3"});
+  overrides.push_back({"event.trigger_over_missing", "3"});
   expect_message(parse_error(pushed, overrides),
-                 "--set event.trigger_amount=3: event.trigger_amount applies only with");
+                 "--set event.trigger_over_missing=3: event.trigger_over_missing applies only with");
 }
 
 TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
@@ -437,6 +447,10 @@ struct Refused {
 
 constexpr Refused refused[] = {
     // Names
+    {"[loading]\nshear_speed_over_c_L = 1e-6",
+     "c.toml:2: loading.shear_speed_over_c_L is loading.shear_speed_m_per_s now, in m/s: "},
+    {"[loading]\nshear_speed_over_c_L = 1e-6",
+     "c.toml:2: loading.shear_speed_over_c_L is loading.shear_speed_m_per_s now, in m/s: "},
     {"[plate]\n\nwidht_m = 0.2", "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?"},
     {"[plate]\nwidth = 0.2", "c.toml:2: unknown key plate.width; did you mean plate.width_m?"},
     {"[friction]\nlaw = \"velocity_weakening\"\nalpha = 0.1",
@@ -496,8 +510,8 @@ constexpr Refused refused[] = {
      "loading.method = direct or ramp"},
     {"[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\nfile = \"a.csv\"\n",
      "c.toml:4: prestress.t_Pa applies only with"},
-    {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n",
-     "c.toml:4: event.trigger_amount", "event.trigger_form = added or raised"},
+    {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_over_missing = 5\n",
+     "c.toml:4: event.trigger_over_missing", "event.trigger_form = added"},
     {"[event]\ntrigger_zone_m = 1e-2\n",
      "c.toml:2: event.trigger_zone_m applies only with event.kind = left"},
     {"[event]\nkind = \"nucleation\"\ntrigger_ramp_s = 0\n", "c.toml:3: event.trigger_ramp_s",
@@ -561,7 +575,7 @@ TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesAndRigidMachinesInfinite) {
     if (parse_error(entry.key + " = inf") == "(nothing thrown)") may_be_infinite.push_back(entry.key);
   }
   EXPECT_EQ(may_be_infinite,
-            (std::vector<std::string>{"loading.shear_stiffness_Pa", "loading.normal_stiffness_Pa",
+            (std::vector<std::string>{"loading.shear_stiffness_Pa_per_m", "loading.normal_stiffness_Pa_per_m",
                                       "time.quiet_s", "output.snapshot_interval_s"}));
 }
 

@@ -152,10 +152,10 @@ void expect_columns(const Plate& plate, const Subset& held) {
   expect_some(part.interface_nodes, whole.interface_nodes);
   expect_some(part.far_edge_nodes, whole.far_edge_nodes);
   expect_some(part.left_nodes, whole.left_nodes);
-  std::vector<double> shares;
+  std::vector<double> lengths_m;
   for (std::size_t k = 0; k < whole.far_edge_nodes.size(); ++k)
-    if (is_held(whole.far_edge_nodes[k])) shares.push_back(whole.far_edge_shares[k]);
-  EXPECT_EQ(part.far_edge_shares, shares);
+    if (is_held(whole.far_edge_nodes[k])) lengths_m.push_back(whole.far_edge_lengths_m[k]);
+  EXPECT_EQ(part.far_edge_lengths_m, lengths_m);
   std::vector<std::tuple<Node, double, double>> absorbing, expected_absorbing;
   for (const auto& [n, side_m, top_m] : part.absorbing_nodes)
     absorbing.emplace_back(in_whole(n), side_m, top_m);

@@ -107,8 +107,8 @@ TEST_F(Monitored, OverloadIsNotBlamedOnTheStep) {
 }
 
 TEST_F(Monitored, TheStrongestLoadIsNamed) {
-  for (const auto& [load, key] : {std::pair(&record::Energies::far_edge_work, "loading.shear_speed_over_c_L"),
-                                  std::pair(&record::Energies::trigger_work, "event.trigger_amount"),
+  for (const auto& [load, key] : {std::pair(&record::Energies::far_edge_work, "loading.shear_speed_m_per_s"),
+                                  std::pair(&record::Energies::trigger_work, "event.trigger_over_missing"),
                                   std::pair(&record::Energies::prestress_work, "prestress.t_Pa"),
                                   std::pair(&record::Energies::strain, "loading.tilt_left_m")}) {
     record::Energies start{.strain = 1}, now{.kinetic = std::numeric_limits<double>::quiet_NaN()};

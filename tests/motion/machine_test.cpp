@@ -26,10 +26,10 @@ struct Sample {
   boundary::Machine machine;
 };
 
-const Sample samples[] = {{"Springs", {1e11, 2e11}},
+const Sample samples[] = {{"Springs", {5e12, 1e13}},
                           {"DeadLoad", {rigid, 0}},
-                          {"PushedBySpring", {1e11, rigid, {1e-3, 5e-3}}},
-                          {"PushedUnderDeadLoad", {1e11, 0, {1e-3, 5e-3}}}};
+                          {"PushedBySpring", {2.5e13, rigid, {1e-3, 5e-3}}},
+                          {"PushedUnderDeadLoad", {2.5e13, 0, {1e-3, 5e-3}}}};
 
 statics::Statics statics_of(const mesh::Mesh& mesh, const solid::Material& material,
                             const boundary::Machine& machine) {

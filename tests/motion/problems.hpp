@@ -166,12 +166,12 @@ inline void pushed(Problem& p) {
 }
 /// By springs in all that a machine may hold.
 inline void gripped(Problem& p) {
-  p.machine.shear_stiffness_Pa = 1e12;
-  p.machine.normal_stiffness_Pa = 2e11;
+  p.machine.shear_stiffness_Pa_per_m = 5e12;
+  p.machine.normal_stiffness_Pa_per_m = 1e12;
   p.is_strained = true;
 }
 inline void under_dead_load(Problem& p) {
-  p.machine.normal_stiffness_Pa = 0;
+  p.machine.normal_stiffness_Pa_per_m = 0;
   p.is_strained = true;
 }
 /// Nodes around an onset: five parts have 40 columns each.

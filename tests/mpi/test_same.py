@@ -67,7 +67,7 @@ CASES = {
     "rounded corners": {"plate": 'corner = "fillet"\nfillet_radius_m = 6e-3'},
     "spontaneous": {"rest": '[event]\nkind = "spontaneous"'},
     "ramp": {
-        "loading": TILT + '\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3',
+        "loading": TILT + '\nmethod = "ramp"\nshear_speed_m_per_s = 1.6',
         "rest": '[event]\nkind = "spontaneous"',
     },
     "no sub-steps": {"time": "interface_substeps = 1"},
@@ -259,7 +259,7 @@ interface_rows = 2
 
 
 PUSHER = "[loading]\npusher_from_m = 8e-3\npusher_to_m = 20e-3\n"  # of rank 0's columns alone
-MACHINE = PUSHER + "shear_stiffness_Pa = 1e9\nnormal_stiffness_Pa = 0.0\n"
+MACHINE = PUSHER + "shear_stiffness_Pa_per_m = 8.3e10\nnormal_stiffness_Pa_per_m = 0.0\n"
 # Event 1 of a law with a state, which slow slip leads to.
 SLOW = """
 [material]

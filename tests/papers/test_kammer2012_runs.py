@@ -23,7 +23,7 @@ from open_choices import Choices, Judged, Sample, region_of
 from slipfront.files import DataError
 from slipfront.read import main as verify
 
-from cases import ALL, HERE, paper_cases, sequences, studies, variations
+from cases import ALL, C_L_M_PER_S, HERE, paper_cases, sequences, studies, variations
 
 CHOICES = Choices(open_choices.open_choices(False))
 
@@ -59,7 +59,11 @@ def test_the_papers_cases_are_the_files_and_have_its_table_1():
                 "plane": "stress",
                 "stiffness_damping_s": 0.1e-6,
             },
-            "loading": {"tilt_left_m": 0.37e-3, "tilt_right_m": 0.037e-3, "shear_speed_over_c_L": 1e-6},
+            "loading": {
+                "tilt_left_m": 0.37e-3,
+                "tilt_right_m": 0.037e-3,
+                "shear_speed_m_per_s": 1e-6 * C_L_M_PER_S,
+            },
             "friction": {"mu_s": 1.3, "mu_k": mu_k, "alpha_m2_per_s2": 0.1},
             "fronts": {"l_star_m": 0.67e-3},
         }

@@ -72,7 +72,8 @@ def test_a_rupture_is_that_of_its_case(name):
 
 
 def test_a_law_with_a_state_moves_as_in_its_case():
-    tables = {"plate": PLATE, "material": {"plane": "strain"}, "base": {"kind": "rigid"}}
+    material = {"plane": "strain", "stiffness_damping_s": 2e-8}
+    tables = {"plate": PLATE, "material": material, "base": {"kind": "rigid"}}
     law = {"law": "rate_and_state_slip", "d_c_m": 1e-6, "V_i_m_per_s": 0.1}
     body = slipfront.Body(slipfront.Mesh(**tables["plate"]), **tables["material"])
     with pytest.raises(slipfront.CaseError, match="friction.tip_slip_rate_m_per_s has no default here"):
@@ -85,10 +86,44 @@ def test_a_law_with_a_state_moves_as_in_its_case():
     require_same(composed, slips_of_run(**case))
 
 
+def test_a_law_in_python_moves_as_the_law_that_it_copies():
+    mu_s, mu_k, d_c_m = 0.7, 0.4, 2e-6
+
+    def mu(slip_rate_m_per_s, slip_m):
+        return mu_s - (mu_s - mu_k) * np.minimum(slip_m / d_c_m, 1)
+
+    slips = []
+    of_registry = {"law": "slip_weakening", "mu_s": mu_s, "mu_k": mu_k, "d_c_m": d_c_m}
+    for law in (of_registry, {"law": mu, "mu_k": mu_k}):
+        made = slipfront.Stepper(plate(), slipfront.Interface(**law))
+        made.start(1.2e6, 2e6, strength_fraction=np.where(made.x_m < 0.01, 0, 1))
+        made.advance(100)
+        slips.append(made.slip_m.copy())
+    assert slips[0].max() > d_c_m
+    np.testing.assert_allclose(slips[1], slips[0], atol=1e-9 * slips[0].max())
+
+
+def test_mistakes_of_a_law_in_python():
+    def of_nothing(slip_rate_m_per_s, slip_m):
+        return 0.6 if slip_m.max() == 0 else np.nan
+
+    refused(lambda: slipfront.Interface(law=lambda rate: 0.6), TypeError)
+    with pytest.raises(slipfront.CaseError, match=r"mu_s follows from the law, as mu\(0, 0\); remove it"):
+        slipfront.Interface(law=of_nothing, mu_s=0.6)
+    with pytest.raises(slipfront.CaseError, match="with a law in Python it must be 1"):
+        slipfront.Stepper(plate(), slipfront.Interface(law=of_nothing), threads=2)
+    made = slipfront.Stepper(plate(), slipfront.Interface(law=of_nothing))
+    made.start(1.3e6, 2e6)
+    with pytest.raises(slipfront.CaseError, match="mu must be at least 0 and a finite number"):
+        made.advance(100)
+    with pytest.raises(slipfront.CaseError, match="the stepper has failed"):
+        made.advance(1)
+
+
 def test_a_start_from_statics_is_that_of_its_case():
     tables = {
         "plate": PLATE | {"width_m": 0.1, "height_m": 0.05, "corner": "relief"},
-        "material": {"plane": "strain"},
+        "material": {"plane": "strain", "stiffness_damping_s": 5e-8},
         "base": {"kind": "rigid"},
         "friction": {"law": "velocity_weakening", "mu_s": 0.9},
         "time": {"end_s": 100e-6},

@@ -134,7 +134,7 @@ def test_damage_is_refused_when_the_file_is_used(tmp_path):
 
 def test_what_is_not_there_is_refused_by_a_line(folder, tmp_path):
     run = slipfront.open(folder)
-    assert run.parameter("loading.shear_stiffness_Pa") == np.inf
+    assert run.parameter("loading.shear_stiffness_Pa_per_m") == np.inf
     assert run.probes is None
     with pytest.raises(slipfront.DataError, match="the run has no such records"):
         run.absolute_stress(run.probes)

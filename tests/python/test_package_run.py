@@ -351,7 +351,7 @@ def test_without_a_folder_results_go_with_what_was_read(tmp_path):
 BODIES = """
 event.kind = "left"
 plate = {width_m = 0.2, height_m = 0.1, element_size_m = 5e-3, corner = "none"}
-loading = {method = "prestress", shear_speed_over_c_L = 0.0}
+loading = {method = "prestress", shear_speed_m_per_s = 0.0}
 time.end_s = 1e-5
 [base]
 kind = "body"
@@ -397,14 +397,14 @@ tilt_right_m = 4e-5
 top_during_tilt = "free"
 method = "direct"
 solver = "direct"
-shear_speed_over_c_L = 2e-6
+shear_speed_m_per_s = 2e-6
 edge_margin_m = 0.011
 critical_margin = 2e-3
 [event]
 kind = "right"
 trigger_form = "raised"
 trigger_zone_m = 0.02
-trigger_amount = 2.0
+trigger_over_strength = 2.0
 trigger_ramp_s = 4e-6
 trigger_duration_s = 2e-5
 [time]
@@ -539,8 +539,8 @@ healing_time_s = 2.0
 [loading]
 pusher_from_m = 8e-3
 pusher_to_m = 16e-3
-shear_stiffness_Pa = 1e9
-normal_stiffness_Pa = 0.0
+shear_stiffness_Pa_per_m = 1.25e11
+normal_stiffness_Pa_per_m = 0.0
 """,
     "slow slip": """
 plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3}

@@ -87,6 +87,21 @@ def test_a_page_holds_the_fronts_in_full(run):
     assert fronts[0]["main"] and sum(fronts[0]["counts"]) > 10 and fronts[0]["symbol"] == "square-open"
 
 
+def test_a_page_begins_with_the_outcome_and_folds_fronts_of_the_trigger(run):
+    text = page_of(run)
+    told = re.search(r'<p class="outcome">(.*?)</p>', text)[1]
+    front = open_run(run).front_list[0]
+    assert f"ran from x = {1e3 * front.x_m[0]:.4g} mm to {1e3 * front.x_m[-1]:.4g} mm, " in told
+    assert re.search(r"at [0-9.]+ m/s \([0-9.]+ c<sub>L</sub>, [0-9.]+ c<sub>S</sub>\) in the median", told)
+    assert "<details>" not in text
+    table = (run / "fronts.csv").read_text()
+    kinds = "|".join(f",{kind}" for kind in ("front", "simultaneous", "path_end"))
+    (run / "fronts.csv").write_text(re.sub(rf"({kinds})$", ",triggered", table, flags=re.MULTILINE))
+    write_checksums(run)
+    text = page_of(run)
+    assert "No front left the trigger" in text and "did not leave the trigger: 1</summary>" in text
+
+
 def test_a_page_needs_no_network(run):
     text = page_of(run)
     assert text.startswith(MARK) and f'content="{POLICY}"' in text

@@ -25,7 +25,7 @@ title = "polycarbonate on Homalite"
 plate = {width_m = 0.15, height_m = 0.06, element_size_m = 3e-3, corner = "none"}
 loading.method = "prestress"
 prestress = {t_Pa = 2.4e6, p_Pa = 4e6}
-event = {kind = "left", trigger_zone_m = 30e-3, trigger_amount = 2, trigger_ramp_s = 2e-6}
+event = {kind = "left", trigger_zone_m = 30e-3, trigger_over_missing = 2, trigger_ramp_s = 2e-6}
 time.end_s = 100e-6
 output.snapshot_times_s = [0.0, 50e-6]
 probes = {x_m = [0.075, 0.0765], y_m = [0.0, -0.0015], names = ["interface", "base"]}
@@ -232,10 +232,10 @@ def test_forces_are_told_with_their_displacements(tmp_path):
 @pytest.mark.parametrize(
     ("name", "keys", "says"),
     [
-        ("loading", {"shear_stiffness_Pa": 1e9}, "; machine of stiffness 1 GPa along x"),
-        ("loading", {"normal_stiffness_Pa": 2e9}, "; stiffness 2 GPa downwards"),
-        ("loading", {"normal_stiffness_Pa": 0.0}, "; dead load"),
-        ("loading", {"shear_stiffness_Pa": math.inf}, ""),
+        ("loading", {"shear_stiffness_Pa_per_m": 1e9}, "; machine of stiffness 1 GPa/m along x"),
+        ("loading", {"normal_stiffness_Pa_per_m": 2e9}, "; stiffness 2 GPa/m downwards"),
+        ("loading", {"normal_stiffness_Pa_per_m": 0.0}, "; dead load"),
+        ("loading", {"shear_stiffness_Pa_per_m": math.inf}, ""),
         (
             "sequence",
             {"times_s": [2, 10], "shears_m": [1e-6, 1e-6]},
@@ -250,11 +250,11 @@ def test_the_machine_and_the_path_are_told(pair, name, keys, says):
 
 
 def test_info_tells_the_machine_and_the_path(tmp_path):
-    loading = "loading = {shear_stiffness_Pa = 1e9, normal_stiffness_Pa = 0.0}\n"
+    loading = "loading = {shear_stiffness_Pa_per_m = 1e9, normal_stiffness_Pa_per_m = 0.0}\n"
     path = "sequence = {max_events = 2, times_s = [2, 10], shears_m = [1e-6, 1e-6]}\n"
     case = write_case(tmp_path, "base.kind = 'rigid'\nplate.element_size_m = 5e-3\n" + loading + path)
     printed = require_done(program("info", case, cwd=tmp_path)).stdout
-    assert re.search(r"machine along x +1e\+09 Pa\n", printed), printed
+    assert re.search(r"machine along x +1e\+09 Pa/m\n", printed), printed
     assert re.search(r"machine downwards +dead load\n", printed), printed
     assert re.search(r"path of the loading +2 points, to 1e-06 m at 10 s\n", printed), printed
 
@@ -270,7 +270,7 @@ def test_the_critical_crack_is_that_of_info(pair):
     [
         ({"kind": "spontaneous"}, "spontaneous: the shear just exceeds the critical one"),
         ({"trigger_form": "weakened"}, "30 mm at the left edge: μ = μ<sub>k</sub> from the start"),
-        ({"trigger_form": "raised", "trigger_amount": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
+        ({"trigger_form": "raised", "trigger_over_strength": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
         ({"kind": "nucleation"}, "patch around x = 75 mm, 7.5 mm to each side and a taper of 3.75 mm"),
     ],
 )

@@ -460,6 +460,8 @@ def test_stable_sliding_is_shown_without_an_event(tmp_path):
     slipfront.run(write_case(tmp_path, STICK_SLIP), changes, output=tmp_path / "out", progress=False)
     text = page_of(tmp_path / "out", tmp_path / "page.html")
     shown = data_of(text)["sequence"]
+    assert '<p class="outcome">No event.</p>' in text and 'class="sketch"' in text
+    assert all(f'<th scope="row">{name}</th>' in text for name in ("Plate", "Loads", "Friction", "Start"))
     plots = ("forces", "extents", "slips", "phases")
     assert [name for name in plots if f'id="{name}-plot"' in text] == ["forces", "phases"]
     loading = slipfront.open(tmp_path / "out").loading

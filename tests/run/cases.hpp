@@ -17,6 +17,7 @@ inline input::Case paper_case() {
   auto config = input::parse_tables({{"plate.width_m", "0.2"},
                                      {"plate.height_m", "0.1"},
                                      {"plate.corner", "relief"},
+                                     {"material.stiffness_damping_s", "0.1e-6"},
                                      {"base.kind", "rigid"},
                                      {"loading.tilt_left_m", "0.37e-3"},
                                      {"loading.tilt_right_m", "0.037e-3"},

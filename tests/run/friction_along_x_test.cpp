@@ -111,7 +111,7 @@ TEST(FrictionAlongX, StatesBeforeAreSharedByEqualFrictionOnly) {
 
 TEST(FrictionAlongX, ARampEndsWhereTheStrengthIsReachedFirst) {
   auto c = test::coarse_case();
-  c.loading.shear_speed_over_c_L = 5e-6;
+  c.loading.shear_speed_m_per_s = 8e-3;
   test::law(c).mu_k = 0.05;
   constexpr double weak = 0.2;
   test::set_table(c, fmt::format("x_m,mu_s\n0,1.3\n0.055,1.3\n0.06,{}\n0.065,1.3\n0.2,1.3\n", weak));

@@ -83,7 +83,7 @@ TEST(Needs, CountTheStepsOfTheRamp) {
   auto config = coarse_case(interface::EventKind::left, 5e-3);
   EXPECT_EQ(needs_of(config).ramp_steps, 0);
   config.loading.method = statics::LoadingMethod::ramp;
-  config.loading.shear_speed_over_c_L = 3e-6;
+  config.loading.shear_speed_m_per_s = 5e-3;
   const auto predicted = static_cast<double>(info(make_problem(config)).needs.ramp_steps);
   EXPECT_NEAR(predicted / static_cast<double>(make_initial_state(make_problem(config), go_on).ramp->steps), 1,
               0.3);
@@ -96,11 +96,11 @@ TEST(Needs, RefuseStepsBeyondCounting) {
   config.time.end_s = 1e-4;
   config.loading.method = statics::LoadingMethod::ramp;
   for (const double speed : {1e-20, 1e-300}) {
-    config.loading.shear_speed_over_c_L = speed;
+    config.loading.shear_speed_m_per_s = speed;
     EXPECT_THAT(error_of([&] { info(make_problem(config)); }),
-                HasSubstr("loading.shear_speed_over_c_L = 1e-"));
+                HasSubstr("loading.shear_speed_m_per_s = 1e-"));
     EXPECT_THAT(error_of([&] { make_initial_state(make_problem(config), go_on); }),
-                HasSubstr("loading.shear_speed_over_c_L"));
+                HasSubstr("loading.shear_speed_m_per_s"));
   }
 }
 

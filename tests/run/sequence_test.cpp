@@ -38,7 +38,7 @@ using ::testing::HasSubstr;
 input::Case sequence_case(int max_events, double mu_k = 0.6) {
   auto config = test::coarse_case();
   config.sequence.max_events = max_events;
-  config.loading.shear_speed_over_c_L = 1e-9;
+  config.loading.shear_speed_m_per_s = 1.6e-6;
   config.time.quiet_s = 0.45e-3;
   config.time.end_s = 11e-3;
   test::law(config).mu_k = mu_k;
@@ -58,7 +58,7 @@ input::Case rate_and_state_case(int max_events) {
   config.friction = law;
   config.loading.mean_pressure_Pa = 5e6;
   config.loading.edge_margin_m = 4e-3;
-  config.loading.shear_speed_over_c_L = 1e-9;
+  config.loading.shear_speed_m_per_s = 1.6e-6;
   config.sequence.max_events = max_events;
   config.time.quiet_s = 0.1e-3;
   config.time.end_s = 4e-3;
@@ -71,7 +71,7 @@ input::Case pushed_block(int max_events) {
   test::law(config).mu_s = 0.7;
   config.plate.corner = mesh::Corner::none;
   config.loading.mean_pressure_Pa = 5e6;
-  config.machine = {2e9, 0, {8e-3, 16e-3}};
+  config.machine = {2.5e11, 0, {8e-3, 16e-3}};
   return config;
 }
 
@@ -302,7 +302,7 @@ TEST(Sequence, UnderADeadLoadKeepsItsNormalForceAndItsBooks) {
 
 TEST(Sequence, OnAMachineAboveKeepsItsBooks) {
   auto config = pushed_block(4);
-  config.machine = {1e10, 2e10};
+  config.machine = {5e10, 1e11};
   Sequence sequence(make_problem(config), test::go_on);
   run_all(sequence, config);
   const auto& rows = sequence.loading();

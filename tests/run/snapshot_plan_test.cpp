@@ -46,7 +46,7 @@ TEST(SnapshotPlan, TellsWhatAQuietEndLeavesOut) {
   // Nothing moves: tractions below the strength, the loaded edge still.
   config.plate.corner = mesh::Corner::none;
   config.loading.method = statics::LoadingMethod::prestress;
-  config.loading.shear_speed_over_c_L = 0;
+  config.loading.shear_speed_m_per_s = 0;
   config.prestress = {1e6, 5e6, "", {}};
   config.time.end_s = 1;
   config.output.snapshot_times_s = {0, 10e-6, 0.5, 1};

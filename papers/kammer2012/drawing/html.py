@@ -209,7 +209,7 @@ def front_table(results: Results) -> str:
         for name, run in results.runs.items()
         for f in run.info.get("fronts", [])
     ]
-    header = ["Event", "Front", "Direction", "From (mm)", "at (µs)", "to (mm)", "at (µs)", "End", "Slip"]
+    header = ["Event", "Front", "Direction", "From", "at", "to", "at", "End", "Slip"]
     return table(header, rows)
 
 

@@ -12,7 +12,7 @@ from slipfront.figures.main_fronts import DRAWN_LENGTH_M
 from slipfront.files import is_number
 from slipfront.folder import UNFINISHED, belongs
 from slipfront.opened import OpenRun, drawn_history, open_run
-from slipfront.read import STATUSES, median
+from slipfront.read import STATUSES, Front, median
 from slipfront.report import setup
 from slipfront.report.fracture import ENERGIES, fracture_data, fracture_section
 from slipfront.report.history import ThinHistory, thinned
@@ -27,6 +27,7 @@ from slipfront.report.run_data import (
 )
 from slipfront.report.sketch import sketch
 from slipfront.report.tables import formatted, front_cells, table
+from slipfront.units import quantity, velocity
 
 MOST_TIMES, MOST_NODES = 400, 320  # of a page with one run
 ENDS = {
@@ -81,18 +82,21 @@ def program_words(info: dict[str, Any]) -> str:
     )
 
 
+def quantity_words(value: Any, unit: str, digits: int = 4) -> str:
+    return quantity(value, unit, digits) if is_number(value) else "not given"
+
+
 def facts(run: OpenRun) -> str:
     info, steps = run.info, number_words(run.info.get("steps"), ",.0f")
-    step = number_words(info.get("dt_s"), ".3g", 1e6, " µs")
-    interface_step = number_words(info.get("interface_dt_s"), ".3g", 1e6, " µs")
+    step, interface_step = (quantity_words(info.get(key), "s", 3) for key in ("dt_s", "interface_dt_s"))
     return facts_table(
         [
             ("Folder", words(run.name)),
             ("End", ending(run)),
             ("Mesh", mesh_words(run)),
-            ("Time", f"{number_words(info.get('time_s'), '.4g', 1e6, ' µs')} in {steps} steps of {step}; "
+            ("Time", f"{quantity_words(info.get('time_s'), 's')} in {steps} steps of {step}; "
                      f"{interface_step} at the interface"),
-            ("Computed in", number_words(info.get("wall_s"), ".3g", 1, " s") + sessions_words(info)),
+            ("Computed in", quantity_words(info.get("wall_s"), "s", 3) + sessions_words(info)),
             ("Program", program_words(info)),
         ]
     )  # fmt: skip
@@ -239,25 +243,65 @@ def frames_words(run: OpenRun) -> str:
     return f"{MOST_FRAMES} of {n} snapshots are shown." if n > MOST_FRAMES else ""
 
 
+def speed_words(m_per_s: float, info: dict[str, Any]) -> str:
+    """In m/s, over c_L and over c_S, as a piece of HTML."""
+    waves = info.get("wave_speeds")
+    over = []
+    for name in ("c_L", "c_S"):
+        c: Any = waves.get(f"{name}_m_per_s") if isinstance(waves, dict) else None
+        if is_number(c) and c > 0:
+            over.append(f"{m_per_s / c:.2f} {setup.WAVES[name]}")
+    return velocity(m_per_s) + (f" ({', '.join(over)})" if over else "")
+
+
 def median_speeds(run: OpenRun) -> dict[int, str]:
-    """Of each front, over c_L and c_S, by its id; empty words where it has no speed."""
-    c_L, c_S = (run.info.get("wave_speeds", {}).get(f"{name}_m_per_s") for name in ("c_L", "c_S"))
-    told = {}
-    for front in run.front_list:
-        v_m_per_s = median(front.v_tip_m_per_s)
-        if np.isfinite(v_m_per_s) and is_number(c_L) and is_number(c_S):
-            told[front.id] = f"{v_m_per_s / c_L:.2f} c_L, {v_m_per_s / c_S:.2f} c_S"
-    return told
+    """Of each front that has one, by its id."""
+    medians = {front.id: median(front.v_tip_m_per_s) for front in run.front_list}
+    return {front: speed_words(v, run.info) for front, v in medians.items() if np.isfinite(v)}
+
+
+def is_of_trigger(front: Front) -> bool:
+    """Whether all of its speeds are the trigger's."""
+    return bool((front.speed_kind == "triggered").all())
+
+
+FRONT_ENDS = {
+    "arrest": "where it arrested",
+    "meets_front": "where it met another front",
+    "contact_end": "the end of the contact",
+    "record_edge": "the edge of the record",
+    "record_end": "still running at the end",
+}
+
+
+def outcome(run: OpenRun) -> str:
+    """How far the longest front went, how fast, and where it ended, as a piece of HTML."""
+    fronts = [front for front in run.front_list if not is_of_trigger(front)]
+    if not fronts:
+        return "No front left the trigger: slip stopped within it." if run.front_list else "No front."
+    front = max(fronts, key=lambda f: f.length_m)
+    found: dict[str, Any] = next((f for f in run.info.get("fronts", []) if f.get("id") == front.id), {})
+    mode, end = found.get("mode"), FRONT_ENDS.get(str(found.get("end")), "")
+    start_m, end_m = (quantity(float(front.x_m[k]), "m") for k in (0, -1))
+    parts = [
+        f"A {mode if mode in ('crack', 'pulse') else 'front'} ran from x = {start_m} to {end_m}",
+        end,
+        f"at {told} in the median" if (told := median_speeds(run).get(front.id)) else "",
+    ]
+    gamma = median((run.breakdown or {}).get(front.id, {}).get(ENERGIES[0], np.empty(0)))
+    if gamma > 0:
+        parts.append(f"Γ = {gamma:.3g} J/m²")
+    return ", ".join(part for part in parts if part) + "."
 
 
 def fronts_section(run: OpenRun) -> str:
     header = [
         "Front",
         "Direction",
-        "From (mm)",
-        "at (µs)",
-        "to (mm)",
-        "at (µs)",
+        "From",
+        "at",
+        "to",
+        "at",
         "End",
         "Slip",
         "Median V_tip",
@@ -268,12 +312,21 @@ def fronts_section(run: OpenRun) -> str:
         front: [formatted(median(of[name]), ".3g") for name in ENERGIES]
         for front, of in (run.breakdown or {}).items()
     }
-    rows = [
-        [*front_cells(f), speeds.get(f.get("id"), "–"), *energies.get(f.get("id"), [])]
+    rows = {
+        f.get("id"): [*front_cells(f), speeds.get(f.get("id"), "–"), *energies.get(f.get("id"), [])]
         for f in run.info.get("fronts", [])
-    ]
-    text = table(header, rows) if rows else "<p>None was found.</p>"
-    return section("fronts", "Fronts", "<p>All that were found, short ones too.</p>", text)
+    }
+    triggers = {front.id for front in run.front_list if is_of_trigger(front)}
+    left = [row for front, row in rows.items() if front not in triggers]
+    stayed = [row for front, row in rows.items() if front in triggers]
+    folded = (
+        f"<details><summary>Fronts that did not leave the trigger: {len(stayed)}</summary>"
+        f"{table(header, stayed)}</details>"
+        if stayed
+        else ""
+    )
+    text = table(header, left) if left else "<p>None left the trigger.</p>" if stayed else "<p>None.</p>"
+    return section("fronts", "Fronts", text, folded)
 
 
 def navigation(places: list[tuple[str, str]]) -> str:
@@ -312,6 +365,7 @@ def page(folder: Path, _file: Path) -> Page:
     return Page(
         title=f"{title}: {run.mark}" if run.mark else title,
         parts=[
+            f'<p class="outcome">{outcome(run)}</p>',
             navigation([place for place in PLACES if place[0] not in missing]),
             section("setup", "Set-up", warnings_of(run), sketch(run), facts_table(setup.rows(run))),
             section("computation", "Computation", facts(run)),

@@ -18,7 +18,7 @@ from slipfront.read import STATUSES, Place, entry, even, is_sequence
 from slipfront.report import setup
 from slipfront.report.numbers import Unit, listed, packed_bytes, unit
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
-from slipfront.report.run import MOST_NODES, navigation, program_words, sessions_words
+from slipfront.report.run import MOST_NODES, navigation, program_words, sessions_words, speed_words
 from slipfront.report.sketch import sketch
 from slipfront.report.study import MOST_ROWS
 from slipfront.report.tables import formatted, table
@@ -78,6 +78,41 @@ def state_words(place: Place, key: str) -> str:
     return f"{ratio:.4f}, {words(phase)}: {shear} over {normal}, at {time} and a displacement of {moved}"
 
 
+LEAST_SLIP_M, USUAL_MARGIN = 1e-7, 0.01  # events of less slip are of some nodes where the margin is less
+
+
+def outcome(sequence: OpenSequence) -> str:
+    """How many events, and how far they slip, as a piece of HTML."""
+    events = sequence.events
+    n = events.sizes["event"]
+    if n == 0:
+        return "No event."
+    n_global = int((events["is_global"] == 1).sum())
+    slips_m = events["mean_slip_m"].to_numpy()
+    least, most = (quantity(float(of(slips_m)), "m", 3) for of in (np.nanmin, np.nanmax))
+    longest = int(np.nanargmax(events["length_m"].to_numpy()))
+    speed = float(events["median_speed_m_per_s"][longest])
+    parts = [
+        f"{n} event{'' if n == 1 else 's'}, {n_global or 'none'} of them over the whole interface",
+        f"mean slip {least}" + ("" if least == most else f" to {most}"),
+        f"fronts of the longest at {speed_words(speed, sequence.info)}" if np.isfinite(speed) else "",
+    ]
+    return ", ".join(part for part in parts if part) + "."
+
+
+def small_events(sequence: OpenSequence) -> list[str]:
+    """What to do where events of a law that sticks slip by nanometres."""
+    n_small = int((sequence.events["max_slip_m"] < LEAST_SLIP_M).sum())
+    margin = sequence.entry("loading", "critical_margin")
+    if n_small == 0 or len(sequence.slow) > 0 or not is_number(margin) or margin >= USUAL_MARGIN:
+        return []
+    return [
+        f"{n_small} of {sequence.events.sizes['event']} events slip by nanometres: they begin where t/p "
+        f"passes mu_s by loading.critical_margin = {margin:g}; a larger one, 0.01 to 0.03, leaves larger "
+        "events alone"
+    ]
+
+
 def facts(sequence: OpenSequence) -> str:
     place, events = sequence.place, sequence.events
     imbalance = place.info.get("imbalance_over_largest_energy")
@@ -97,9 +132,10 @@ def facts(sequence: OpenSequence) -> str:
 
 
 def setup_section(sequence: OpenSequence, remarks: list[str]) -> str:
-    told = warnings_list(remarks, "mark")
+    told = warnings_list(remarks, "mark") + warnings_list(small_events(sequence))
     if len(sequence.runs) == 0:
-        return section("setup", "Set-up", told, "<p>No event is complete.</p>")
+        known = [told, sketch(sequence), facts_table(setup.rows_of_case(sequence))]
+        return section("setup", "Set-up", *known, "<p>No event is complete.</p>")
     first = sequence.runs[0]
     return section(
         "setup",
@@ -254,10 +290,8 @@ def events_section(sequence: OpenSequence) -> str:
         "time": unit("time", events["slip_s"]),
         "1": Unit("", 1.0),
     }
-    c_L = place.info.get("wave_speeds", {}).get("c_L_m_per_s")
-    speed = Unit("c<sub>L</sub>", 1 / c_L) if is_number(c_L) and c_L > 0 else Unit("m/s", 1.0)
     columns = [
-        ("begin_s", "At", Unit("s", 1.0), ".6g"),
+        ("begin_s", "At", unit("time", events["begin_s"]), ".6g"),
         ("shear_m", "shear", units["shear"], ".5g"),
         ("from_x_m", "From", units["length"], ".4g"),
         ("to_x_m", "to", units["length"], ".4g"),
@@ -272,8 +306,12 @@ def events_section(sequence: OpenSequence) -> str:
         ("wave_loss_J_per_m", "waves left", Unit("J/m", 1.0), ".3g"),
         ("slip_s", "Slips for", units["time"], ".4g"),
         ("n_fronts", "Fronts", units["1"], ".0f"),
-        ("median_speed_m_per_s", "speed", speed, ".3g"),
+        ("median_speed_m_per_s", "speed", Unit("m/s", 1.0), ".4g"),
     ]
+    for wave in ("c_L", "c_S"):
+        c = place.info.get("wave_speeds", {}).get(f"{wave}_m_per_s")
+        if is_number(c) and c > 0:
+            columns.append(("median_speed_m_per_s", "speed", Unit(setup.WAVES[wave], 1 / c), ".2f"))
     header = ["Event", *(f"{name} ({of.name})" if of.name else name for _, name, of, _ in columns)]
     cells = [[formatted(float(v), form, of.factor) for v in events[key]] for key, _, of, form in columns]
     numbers = [str(int(n)) for n in events["event"]]
@@ -301,6 +339,7 @@ def page(folder: Path, _file: Path) -> Page:
     return Page(
         title=f"{title}: {told}" if told else title,
         parts=[
+            f'<p class="outcome">{outcome(sequence)}</p>',
             navigation([part for part in PLACES if part[0] in (*always, *drawn)]),
             setup_section(sequence, remarks),
             section("computation", "Computation", facts(sequence)),

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from slipfront.files import is_number
-from slipfront.opened import OpenRun
+from slipfront.opened import Opened, OpenRun
 from slipfront.read import entry
 from slipfront.report.page import words
-from slipfront.units import name_of, quantity, unit_of
+from slipfront.units import name_of, quantity, unit_of, velocity
 
 MU_S, MU_K = "μ<sub>s</sub>", "μ<sub>k</sub>"
 WAVES = {"c_L": "c<sub>L</sub>", "c_S": "c<sub>S</sub>", "c_R": "c<sub>R</sub>"}
@@ -25,35 +25,35 @@ EDGES = {
 }
 
 
-def si(run: OpenRun, table: str, key: str, digits: int = 4) -> str:
+def si(run: Opened, table: str, key: str, digits: int = 4) -> str:
     """A number of the case in engineering units."""
     value = run.entry(table, key)
     return quantity(value, unit_of(key), digits) if is_number(value) else "not given"
 
 
-def is_set(run: OpenRun, table: str, key: str) -> bool:
+def is_set(run: Opened, table: str, key: str) -> bool:
     """Whether a number of the case is neither zero nor infinite."""
     value = run.entry(table, key)
     return is_number(value) and value != 0
 
 
-def has_base(run: OpenRun) -> bool:
+def has_base(run: Opened) -> bool:
     return run.entry("base", "kind") == "body"
 
 
-def is_uniform(run: OpenRun) -> bool:
+def is_uniform(run: Opened) -> bool:
     """Whether the tractions were prescribed, and equal along the interface."""
     return run.prescribed and not run.entry("prestress", "file")
 
 
-def edge(run: OpenRun, table: str, key: str) -> str:
+def edge(run: Opened, table: str, key: str) -> str:
     told = str(run.entry(table, key))
-    if told == "loaded" and run.prescribed and not is_set(run, "loading", "shear_speed_over_c_L"):
+    if told == "loaded" and run.prescribed and not is_set(run, "loading", "shear_speed_m_per_s"):
         return "held"
     return words(EDGES.get(told, told))
 
 
-def material(run: OpenRun, table: str) -> str:
+def material(run: Opened, table: str) -> str:
     parts = [
         f"E = {si(run, table, 'youngs_modulus_Pa')}",
         f"ν = {si(run, table, 'poissons_ratio')}",
@@ -64,7 +64,7 @@ def material(run: OpenRun, table: str) -> str:
     return ", ".join([*parts, damping])
 
 
-def plate(run: OpenRun) -> str:
+def plate(run: Opened) -> str:
     size = f"{si(run, 'plate', 'width_m')} × {si(run, 'plate', 'height_m')}"
     plane = f"plane {words(run.entry('material', 'plane'))}"
     edges = f"upper edge {edge(run, 'plate', 'top')}, sides {edge(run, 'plate', 'sides')}"
@@ -76,7 +76,7 @@ def plate(run: OpenRun) -> str:
     return f"{size}, {plane}; {material(run, 'material')}; {edges}{rounded.get(str(corner), '')}"
 
 
-def base(run: OpenRun) -> str:
+def base(run: Opened) -> str:
     if not has_base(run):
         return "rigid plane"
     size = f"{si(run, 'plate', 'width_m')} × {si(run, 'base', 'height_m')}"
@@ -84,7 +84,7 @@ def base(run: OpenRun) -> str:
     return f"{size}; {material(run, 'base')}; {edges}"
 
 
-def waves(run: OpenRun) -> str:
+def waves(run: Opened) -> str:
     def told(speeds: Any) -> str:
         speeds = speeds if isinstance(speeds, dict) else {}
         found = ((name, speeds.get(f"{wave}_m_per_s")) for wave, name in WAVES.items())
@@ -125,27 +125,42 @@ def forces(found: dict[str, Any]) -> list[str]:
     ]
 
 
-def machine(run: OpenRun) -> str:
+def machine(run: Opened) -> str:
     """Stiffness and path of what loads the plate, in words; empty of a rigid machine at a constant speed."""
     along_x, down = (run.entry("loading", f"{name}_stiffness_Pa") for name in ("shear", "normal"))
     times_s, shears_m = (run.entry("sequence", name) for name in ("times_s", "shears_m"))
     parts = []
     if is_number(along_x) and math.isfinite(along_x):
-        parts.append(f"machine of stiffness {quantity(along_x, 'Pa')} along x")
+        parts.append(f"machine of stiffness {quantity(along_x, 'Pa/m')} along x")
     if is_number(down) and math.isfinite(down):
-        parts.append(f"stiffness {quantity(down, 'Pa')} downwards" if down else "dead load")
+        parts.append(f"stiffness {quantity(down, 'Pa/m')} downwards" if down else "dead load")
     if isinstance(times_s, list) and isinstance(shears_m, list) and times_s and shears_m:
         end = f"{quantity(shears_m[-1], 'm')} at {quantity(times_s[-1], 's')}"
         parts.append(f"loaded along a path of {len(times_s)} points to {end}")
     return "".join(f"; {part}" for part in parts)
 
 
+def motion(run: Opened) -> str:
+    """How the upper edge or the machine moves on, in words."""
+    speed = run.entry("loading", "shear_speed_m_per_s")
+    moves = f"; upper edge moves to +x at {velocity(speed, 3)}" if is_number(speed) and speed else ""
+    return moves + machine(run)
+
+
+def loads_of_case(run: Opened) -> str:
+    """What presses and shears, as the case says it."""
+    names = {"mean_pressure_Pa": "mean pressure", "normal_force_N_per_m": "normal force"}
+    given = [
+        f"{name} {si(run, 'loading', key)}" for key, name in names.items() if is_set(run, "loading", key)
+    ]
+    left, right = (si(run, "loading", f"tilt_{side}_m") for side in ("left", "right"))
+    pressed = given[0] if given else f"upper edge pressed down {left} at its left end, {right} at its right"
+    return pressed + motion(run)
+
+
 def loads(run: OpenRun) -> str:
     """p and t before the event, and where they come from."""
-    speed = run.entry("loading", "shear_speed_over_c_L")
-    moves = (
-        f"; upper edge moves to +x at {speed * run.c_L_m_per_s:.3g} m/s" if is_number(speed) and speed else ""
-    ) + machine(run)
+    moves = motion(run)
     if is_uniform(run):
         p, t = si(run, "prestress", "p_Pa"), si(run, "prestress", "t_Pa")
         return f"pressure p = {p}, shear t = {t}, prescribed, uniform{moves}"
@@ -177,7 +192,7 @@ def loads(run: OpenRun) -> str:
     return "; ".join([*forces(found), moves, of_nodes])
 
 
-def table_of_mu(run: OpenRun, over: str, unit: str) -> str:
+def table_of_mu(run: Opened, over: str, unit: str) -> str:
     places, mu = (run.entry("friction", key) for key in (over, "table_mu"))
     factor = run.entry("friction", "mu_factor")
     if not (isinstance(places, list) and isinstance(mu, list) and is_number(factor)):
@@ -188,7 +203,7 @@ def table_of_mu(run: OpenRun, over: str, unit: str) -> str:
     )
 
 
-def law(run: OpenRun) -> str:
+def law(run: Opened) -> str:
     def number(key: str) -> str:
         return si(run, "friction", key)
 
@@ -216,7 +231,7 @@ def law(run: OpenRun) -> str:
             return words(f"{other}: {', '.join(parts)}")
 
 
-def friction(run: OpenRun) -> str:
+def friction(run: Opened) -> str:
     parts = [law(run)]
     delayed = run.entry("friction", "regularisation")
     if delayed in ("strength", "pressure"):
@@ -243,7 +258,7 @@ def friction(run: OpenRun) -> str:
     return "; ".join(parts)
 
 
-def rise(run: OpenRun) -> str:
+def rise(run: Opened) -> str:
     ramp = (
         f", rising over {si(run, 'event', 'trigger_ramp_s')}"
         if is_set(run, "event", "trigger_ramp_s")
@@ -257,9 +272,12 @@ def rise(run: OpenRun) -> str:
     return ramp + ends
 
 
-def start(run: OpenRun) -> str:
+def start(run: Opened) -> str:
     """What starts the event: form, zone, amount."""
-    amount = f"{run.entry('event', 'trigger_amount')}"
+
+    def amount(over: str) -> str:
+        return str(run.entry("event", f"trigger_over_{over}"))
+
     match run.kind, run.entry("event", "trigger_form"):
         case "none", _:
             return "nothing but the loads"
@@ -269,8 +287,8 @@ def start(run: OpenRun) -> str:
             return "spontaneous: the shear just exceeds the critical one"
         case ("left" | "right") as side, form:
             forms = {
-                "added": f"shear added, {amount} times what is missing to {MU_S}p{rise(run)}",
-                "raised": f"shear raised to {amount} {MU_S}p{rise(run)}",
+                "added": f"shear added, {amount('missing')} times what is missing to {MU_S}p{rise(run)}",
+                "raised": f"shear raised to {amount('strength')} {MU_S}p{rise(run)}",
                 "weakened": f"μ = {MU_K} from the start",
             }
             zone = si(run, "event", "trigger_zone_m")
@@ -287,7 +305,7 @@ def start(run: OpenRun) -> str:
             return words(kind)
 
 
-def rupture(run: OpenRun) -> str:
+def rupture(run: Opened) -> str:
     """S before the event, and what it lets expect; of runs that tell it."""
     told = run.info.get("rupture")
     if not isinstance(told, dict):
@@ -307,6 +325,19 @@ def rupture(run: OpenRun) -> str:
     ]
     parts = [of_S, *lengths, str(told.get("regime", ""))]
     return words("; ".join(part for part in parts if part))
+
+
+def rows_of_case(run: Opened) -> list[tuple[str, str]]:
+    """What is known without an event."""
+    return [
+        ("Case", words(run.title or "without a title")),
+        ("Plate", plate(run)),
+        ("Base", base(run)),
+        ("Loads", loads_of_case(run)),
+        ("Friction", friction(run)),
+        ("Start", start(run)),
+        ("Wave speeds", waves(run)),
+    ]
 
 
 def rows(run: OpenRun) -> list[tuple[str, str]]:

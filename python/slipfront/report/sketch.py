@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from slipfront.files import is_number
-from slipfront.opened import OpenRun
+from slipfront.opened import Opened
 from slipfront.report.page import words
 from slipfront.report.setup import edge, has_base, is_uniform
 from slipfront.units import quantity
@@ -39,7 +39,7 @@ def border(x1: float, y1: float, x2: float, y2: float, kind: str) -> str:
     return line(x1, y1, x2, y2, looks.get(kind, f'stroke="{LINE}" stroke-width="4"'))
 
 
-def body(run: OpenRun, table: str, x: float, y: float, w: float, h: float) -> str:
+def body(run: Opened, table: str, x: float, y: float, w: float, h: float) -> str:
     """A rectangle, its three edges off the interface, and their words."""
     is_plate = table == "plate"
     fill, far = (PLATE, "top") if is_plate else (BASE, "bottom")
@@ -55,7 +55,7 @@ def body(run: OpenRun, table: str, x: float, y: float, w: float, h: float) -> st
     )
 
 
-def driven_m(run: OpenRun, width_m: float) -> tuple[float, float] | None:
+def driven_m(run: Opened, width_m: float) -> tuple[float, float] | None:
     """Where the trigger or the patch acts, within the plate."""
     if run.kind in ("left", "right"):
         zone_m = run.entry("event", "trigger_zone_m")
@@ -71,7 +71,7 @@ def driven_m(run: OpenRun, width_m: float) -> tuple[float, float] | None:
     return (from_m, to_m) if from_m < to_m else None
 
 
-def probes(run: OpenRun, x0: float, y0: float, scale: float) -> str:
+def probes(run: Opened, x0: float, y0: float, scale: float) -> str:
     """Dots at the places of [probes], with their names where there are few."""
     places = [run.entry("probes", key) for key in ("x_m", "y_m", "names")]
     if not all(isinstance(values, list) for values in places):
@@ -88,7 +88,7 @@ def probes(run: OpenRun, x0: float, y0: float, scale: float) -> str:
     return "".join(drawn)
 
 
-def pusher_m(run: OpenRun) -> tuple[float, float] | None:
+def pusher_m(run: Opened) -> tuple[float, float] | None:
     """The heights between which the left side is pushed."""
     from_m, to_m = (run.entry("loading", f"pusher_{end}_m") for end in ("from", "to"))
     return (from_m, to_m) if is_number(from_m) and is_number(to_m) and to_m > from_m else None
@@ -102,7 +102,7 @@ def pusher(x: float, from_y: float, to_y: float) -> str:
     ) + arrow(x - PUSHER - 30, 0.5 * (from_y + to_y), x - PUSHER - 2, 0.5 * (from_y + to_y))
 
 
-def load(run: OpenRun, x: float, w: float, y: float) -> str:
+def load(run: Opened, x: float, w: float, y: float) -> str:
     """Arrows of what presses and, unless a side is pushed, shears, above the plate."""
     p, t = (run.entry("prestress", f"{name}_Pa") for name in "pt")
     known = is_uniform(run) and is_number(p) and is_number(t)
@@ -117,7 +117,7 @@ def load(run: OpenRun, x: float, w: float, y: float) -> str:
     return "".join(parts)
 
 
-def sketch(run: OpenRun) -> str:
+def sketch(run: Opened) -> str:
     """Nothing where the case lacks the sizes."""
     width_m, height_m = (run.entry("plate", key) for key in ("width_m", "height_m"))
     base_m = run.entry("base", "height_m") if has_base(run) else 0.0

@@ -7,6 +7,7 @@ from html import escape
 from typing import Any
 
 from slipfront.files import is_number
+from slipfront.units import quantity
 
 
 def text(value: Any) -> str:
@@ -40,10 +41,10 @@ def front_cells(f: dict[str, Any]) -> list[str]:
     return [
         text(f.get("id")),
         {1: "to +x", -1: "to −x"}.get(f.get("direction", 0), "–"),
-        formatted(f.get("start_x_m"), ".1f", 1e3),
-        formatted(f.get("start_s"), ".1f", 1e6),
-        formatted(f.get("end_x_m"), ".1f", 1e3),
-        formatted(f.get("end_s"), ".1f", 1e6),
+        *(
+            quantity(f[key], unit) if is_number(f.get(key)) else "–"
+            for key, unit in (("start_x_m", "m"), ("start_s", "s"), ("end_x_m", "m"), ("end_s", "s"))
+        ),
         text(f.get("end")).replace("_", " "),
         text(f.get("mode")),
     ]

@@ -44,9 +44,10 @@ const char* strongest_load(const record::Energies& now, const record::Energies& 
     const char* keys;
   };
   const std::array<Load, 4> loads = {{
-      {std::abs(now.trigger_work), "event.trigger_amount, or nucleation.overstress_Pa of a patch"},
+      {std::abs(now.trigger_work),
+       "event.trigger_over_missing or trigger_over_strength, or nucleation.overstress_Pa of a patch"},
       {std::abs(now.prestress_work), "prestress.t_Pa, or the tractions in prestress.file"},
-      {std::abs(now.far_edge_work), "loading.shear_speed_over_c_L"},
+      {std::abs(now.far_edge_work), "loading.shear_speed_m_per_s"},
       {start.stored(), "loading.tilt_left_m and loading.tilt_right_m, or the force given instead"},
   }};
   return std::ranges::max_element(loads, {}, &Load::energy_J_per_m)->keys;
