@@ -188,7 +188,7 @@ THRESHOLD = 0.1 * A * P_PA / (E_PA / (2 * (1 + NU)) / np.sqrt(E_PA / (2 * (1 + N
 
 @dataclass
 class Compared:
-    softness: float
+    name: str
     program: Cycles
     equation: Cycles
 
@@ -202,7 +202,11 @@ def compared(folder: Path) -> list[Compared]:
     found = []
     for softness in SOFT:
         ours = program(case(softness, one(D_C_M), ""), folder / f"state_{softness}")
-        found.append(Compared(softness, ours, equation(softness, one(D_C_M), END_S * SOFT[1] / softness)))
+        found.append(
+            Compared(f"{softness}", ours, equation(softness, one(D_C_M), END_S * SOFT[1] / softness))
+        )
+    ours = program(case(SOFT[1], TWO, ""), folder / "two")
+    found.append(Compared(f"{SOFT[1]}, two states", ours, equation(SOFT[1], TWO, END_S)))
     return found
 
 
@@ -231,7 +235,7 @@ def table(found: list[Compared], steady: tuple[Cycles, Cycles, float]) -> str:
     text = "| spring over block | quantity | program | equation | off |\n|---|---|---|---|---|\n"
     for c in found:
         for name, (value, solution) in differences(c).items():
-            text += f"| {c.softness} | {name} | {value:.5g} | {solution:.5g} "
+            text += f"| {c.name} | {name} | {value:.5g} | {solution:.5g} "
             text += f"| {value / solution - 1:+.2%} |\n"
     ours, theirs, expected = steady
     text += (
@@ -245,12 +249,12 @@ def table(found: list[Compared], steady: tuple[Cycles, Cycles, float]) -> str:
 def draw(found: list[Compared], picture: Path) -> None:
     with matplotlib.rc_context(style.RC):
         figure = style.new_figure(2 * style.COLUMN_MM, 55)
-        for axes, c in zip(figure.subplots(1, 3).flat, found, strict=True):
+        for axes, c in zip(figure.subplots(1, 3).flat, found[:3], strict=True):
             last = c.program.time_s[-1]
             axes.plot(c.equation.time_s, c.equation.force, color="0.6", lw=2, label="rigid block")
             axes.plot(c.program.time_s, c.program.force, "k-", lw=0.6, label="program")
             axes.set(xlim=(0, last), xlabel="time (s)", ylabel="F_S/F_N")
-            axes.set_title(f"spring {c.softness} of the block", fontsize=7)
+            axes.set_title(f"spring {c.name} of the block", fontsize=7)
         figure.axes[0].legend(fontsize=6)
         write_figure(picture, figure)
 

@@ -21,7 +21,7 @@ import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import BlowUpError, CaseError, WriteError
 from slipfront.given import array, flag, in_order, kept_path, number, path, shown, table, text, whole
-from slipfront.opened import Kept, OpenRun, open_run
+from slipfront.opened import Kept, OpenRun
 from slipfront.opened_sequence import OpenSequence, opened
 from slipfront.read import HISTORY_FIELDS
 
@@ -315,10 +315,10 @@ def run_with_law(
     mu: called with slip rates |v|, m/s, and slip paths, m, both [nodes]; returns the friction coefficient
     [nodes]. Called up to five times for each (sub-)step, since the rate at its end depends on mu.
 
-    evolve: of a law with states, which never sticks, in a case with a law of rate and state, in whose place it
-    is. evolve(dt_s, slip_rate, *states) returns the states after a time at these slip rates, however short or
-    long: an array, or a tuple of as many as there are states. mu(slip_rate, *states) rises with the slip rate
-    and is odd in it, so that it is asked for above 0 alone. Each node is solved for its slip rate; mu is
+    evolve: of a law with states, which never sticks, in the place of a law of rate and state, which the case
+    has. evolve(dt_s, slip_rate, *states) returns the states after a time at these slip rates, however short
+    or long: an array, or a tuple of as many as there are states. mu(slip_rate, *states) rises with the slip
+    rate and is odd in it, so that it is asked for above 0 alone. Each node is solved for its slip rate; mu is
     called some 10 times. States are those of the case's law, and begin as its.
 
     states, initial: states of its own instead, names as they are to have in results, with their units, and

@@ -153,7 +153,7 @@ void add_lengths(const run::RuptureOutlook& rupture, std::string_view law, Listi
                            : std::string();
   list.add("nucleation length",
            never_sticks && law != "rate_and_state_aging"
-               ? std::string("unknown: that of the aging law does not hold for the slip law")
+               ? std::string("unknown: that of the aging law with one state holds for no other")
                : fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
                              never_sticks ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
   if (o.unstable_wavelength_m)

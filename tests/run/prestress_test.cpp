@@ -334,7 +334,8 @@ TEST(Trigger, OneThatAddsNothingIsRefused) {
     c.trigger.amount = amount;
     EXPECT_THAT(check_error(c), ::testing::EndsWith(error));
     if (error != test::accepted) {
-      EXPECT_THAT(check_error(c), ::testing::StartsWith(input::trigger_key(c) + std::string(" = ")));
+      EXPECT_THAT(check_error(c),
+                  ::testing::StartsWith(input::start_of(c).trigger_key() + std::string(" = ")));
     }
   }
   // Where the tractions have to be found first, the run refuses.
