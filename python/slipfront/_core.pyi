@@ -424,7 +424,7 @@ class Interface:
     """
     Contact and friction of an interface.
 
-    friction: keys of [friction], such as law="slip_weakening" and its parameters. contact: contact.algorithm, "direct" or "predictor_corrector". Raises CaseError.
+    friction: keys of [friction], such as law="slip_weakening" and its parameters. law may be a function mu(slip_rate_m_per_s, slip_m), as that of run_with_law: its mu(0, 0) is mu_s, and mu_k that of nodes weakened by strength_fraction, by default mu_s. contact: contact.algorithm, "direct" or "predictor_corrector". Raises CaseError.
     """
 
     def __init__(self, *, contact: object = 'direct', **friction: object) -> None: ...
