@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/state.hpp"
 
 namespace slipfront::motion {
 
@@ -72,6 +73,7 @@ void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics:
     if (state == statics::Contact::slip) state = statics::Contact::stick;
   bodies_ = statics_.sliding(now_.contact);
   works_ = {};
+  n_steps_ = 0;
   next_dt_s_ = first_dt_s();
   balance(now_, rates_);
   light_Pa_ = light_pressure_Pa(now_.p_Pa, tributary_m_);
@@ -90,6 +92,21 @@ void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics:
     next_dt_s_ *= 0.1;
     slide(now_, rates_);
   }
+}
+
+void QuasiDynamicSlip::restored() {
+  const std::size_t n = tributary_m_.size();
+  const auto is_of = [&](const auto&... values) { return ((values.size() == n) && ...); };
+  const auto are_of = [&](const interface::LawStates& states) {
+    return states.size() == friction_.initial_states().size() &&
+           std::ranges::all_of(states, [&](const auto& values) { return is_of(values); });
+  };
+  require_possible(
+      is_of(now_.u_x_m, now_.slip_rate_m_per_s, now_.t_Pa, now_.p_Pa, now_.gap_m, now_.contact, rates_.u_x) &&
+          are_of(now_.law_states) && are_of(rates_.law_states) && next_dt_s_ > 0 &&
+          std::ranges::all_of(now_.contact, [](auto contact) { return contact <= statics::Contact::open; }),
+      "slow slip");
+  bodies_ = statics_.sliding(now_.contact);
 }
 
 bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,

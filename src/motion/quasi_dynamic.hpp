@@ -63,10 +63,18 @@ class QuasiDynamicSlip {
   bool slip_until(double end_s, double slip_rate_m_per_s, const std::function<bool()>& after_step);
 
   const QuasiDynamicState& state() const { return now_; }
-  /// Since start.
+  /// Both since start.
   const SlowWorks& works() const { return works_; }
   std::int64_t n_steps() const { return n_steps_; }
   const interface::QuasiDynamicFriction& friction() const { return friction_; }
+
+  /// All that changes after start, between two steps. What goes on from it does as if it had never stopped.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(now_, rates_.u_x, rates_.law_states, works_.of_load_J_per_m, works_.of_friction_J_per_m,
+            works_.of_contact_J_per_m, works_.radiated_J_per_m, light_Pa_, next_dt_s_, n_steps_);
+    if (archive.is_loading()) restored();
+  }
 
  private:
   struct Rates {
@@ -84,6 +92,8 @@ class QuasiDynamicSlip {
   /// Lets nodes that would be pulled go, and those that come down touch.
   void settle_contact();
   bool correct_contact();
+  /// @throws StateError where what was read is of another interface
+  void restored();
 
   const statics::Statics& statics_;
   interface::QuasiDynamicFriction friction_;

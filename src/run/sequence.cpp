@@ -55,62 +55,6 @@ void add_works(const InitialState& initial, const statics::Equilibrium& from, co
   sum.far_edge_work += force_N_per_m * (to.shear_m - from.shear_m);
 }
 
-/// Finds where a quantity turns: where it has come back from an extreme by some amount.
-class TurnFinder {
- public:
-  /// Follows a quantity that rises at first.
-  TurnFinder(double start, double amount) : extreme_(start), amount_(amount) {}
-
-  /// @return whether it has turned since the last value
-  bool see(double value) {
-    const double back = direction_ * (extreme_ - value);
-    if (back > 0 && back < amount_) return false;
-    extreme_ = value;
-    if (back <= 0) return false;
-    direction_ = -direction_;
-    return true;
-  }
-
- private:
-  double extreme_, amount_, direction_ = 1;
-};
-
-/// Of a node's states.
-double change(const interface::QuasiDynamicFriction& friction, std::size_t node,
-              const interface::LawStates& states, const interface::LawStates& before) {
-  return friction.change(node, [&](std::size_t k) { return states[k][node] - before[k][node]; });
-}
-
-/// Finds that slip is steady: while all nodes that stick by friction slip by many d_c, states stay as they
-/// are.
-class SteadySlip {
- public:
-  explicit SteadySlip(const interface::QuasiDynamicFriction& friction) : friction_(friction) {}
-
-  /// @return whether it is steady
-  bool see(const motion::QuasiDynamicState& state) {
-    constexpr double many = 10, least_change = 1e-3;  // of d_c, and of that by which the rate changes e-fold
-    bool has_slipped = !u_x_m_.empty();
-    for (std::size_t k = 0; k < u_x_m_.size(); ++k) {
-      if (state.contact[k] != statics::Contact::stick) continue;
-      if (change(friction_, k, state.law_states, law_states_) > least_change) {
-        u_x_m_.clear();
-        break;
-      }
-      has_slipped = has_slipped && std::abs(state.u_x_m[k] - u_x_m_[k]) > many * friction_.d_c_m()[k];
-    }
-    if (!u_x_m_.empty()) return has_slipped;
-    u_x_m_ = state.u_x_m;
-    law_states_ = state.law_states;
-    return false;
-  }
-
- private:
-  const interface::QuasiDynamicFriction& friction_;
-  std::vector<double> u_x_m_;        ///< when the states changed last
-  interface::LawStates law_states_;  ///< then
-};
-
 void add_event_works(const record::Energies& of_event, record::Energies& sum) {
   for (const auto& term : record::energy_terms)
     if (term.kind == record::EnergyKind::work) sum.*term.member += of_event.*term.member;
@@ -322,87 +266,54 @@ LoadingRow Sequence::slow_row(LoadingPhase phase, const LoadingRow& from) const 
   return now;
 }
 
-bool Sequence::slip_to_next(const SlowRows& slow_rows) {
-  // Rows of the loading come where the fastest slip rate has doubled or halved and where F_S/F_N turns, those
-  // of the interface by steps, and when there are many where rates or states have changed, too.
-  constexpr double row_factor = 2;
-  const auto from = loading_.back();
+void Sequence::begin_creep() {
+  slow_->start(rest_.time_s, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.law_states);
   const auto& state = slow_->state();
-  double row_rate_m_per_s = 0, last_row_s = -infinity;
-  std::size_t n_rows = 0;
-  std::vector<double> row_V_m_per_s;
-  interface::LawStates row_states;
+  if (events_.empty() && state.fastest_m_per_s() >= inertia_slip_rate_m_per_s(problem_))
+    throw UserError(
+        "normal loading alone lets the interface slip at {:.3g} m/s, where an event begins; choose a larger "
+        "{} or a smaller {}",
+        state.fastest_m_per_s(), Key("friction.theta_i_s"), Key("friction.V_i_m_per_s"));
+  creep_.emplace(*slow_, initial_.tributary_m);
+}
+
+bool Sequence::slip_to_next(const SlowRows& slow_rows) {
+  if (!creep_) begin_creep();
+  const auto from = loading_[n_rows_at_rest_ - 1];
+  const auto& state = slow_->state();
   const auto u_tilted = relative(initial_, statics_.tilted());
   const auto give_row = [&] {
-    if (std::exchange(last_row_s, state.time_s) == state.time_s) return;  // the end is such a step, too
+    if (!creep_->takes_row(state)) return;
     record::History row{
         {state.time_s}, at_rest_.tractions.x_m, state.u_x_m, state.slip_rate_m_per_s, state.t_Pa,
         state.p_Pa,     state.law_states};
     for (std::size_t k = 0; k < row.slip_m.size(); ++k) row.slip_m[k] += rest_.moved_m - u_tilted.x_m[k];
     slow_rows(row);
-    ++n_rows;
-    row_V_m_per_s = state.slip_rate_m_per_s;
-    row_states = state.law_states;
   };
-  const auto has_changed = [&] {
-    // States have changed by this share of an e-fold slip rate; rates have doubled or halved, of nodes that
-    // are not far slower than the fastest: those of nodes that bear little go up and down by some per cent
-    // from step to step.
-    constexpr double of_state = 0.1, of_rate = 0.5, slow = 0.1;
-    const double least_m_per_s = slow * state.fastest_m_per_s();
-    for (std::size_t k = 0; k < row_V_m_per_s.size(); ++k) {
-      const double V = std::abs(state.slip_rate_m_per_s[k]), row_V = std::abs(row_V_m_per_s[k]);
-      if (state.contact[k] == statics::Contact::stick &&
-          (change(slow_->friction(), k, state.law_states, row_states) > of_state ||
-           std::abs(V - row_V) > of_rate * std::max({V, row_V, least_m_per_s})))
-        return true;
-    }
-    return false;
-  };
-  const auto friction = [&] {
-    const auto force = statics::contact_force(state.p_Pa, state.t_Pa, initial_.tributary_m);
-    return force.shear_N_per_m / force.normal_N_per_m;
-  };
-  slow_->start(rest_.time_s, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.law_states);
-  const double rate_m_per_s = inertia_slip_rate_m_per_s(problem_);
-  if (events_.empty() && state.fastest_m_per_s() >= rate_m_per_s)
-    throw UserError(
-        "normal loading alone lets the interface slip at {:.3g} m/s, where an event begins; choose a larger "
-        "{} "
-        "or a smaller {}",
-        state.fastest_m_per_s(), Key("friction.theta_i_s"), Key("friction.V_i_m_per_s"));
-  TurnFinder turns(friction(), 0.01 * std::ranges::min(slow_->friction().a()));
-  SteadySlip steady(slow_->friction());
-  const auto n_before = slow_->n_steps();
-  give_row();
+  if (creep_->n_rows() == 0) give_row();
   const auto after_step = [&] {
-    if (!monitor_(0, 0))
-      throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after normal loading", state.time_s));
     require_stands(state.time_s, state.shear_m + rest_.moved_m, state.t_Pa, state.p_Pa);
-    if (std::isinf(path_.end_s()) && steady.see(state))
+    if (std::isinf(path_.end_s()) && creep_->is_steady(*slow_))
       throw UserError(
           "{:.6g} s after normal loading the interface slips steadily, at {:.3g} m/s: no event comes; give "
-          "{}, or "
-          "a softer machine ({})",
+          "{}, or a softer machine ({})",
           state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"),
           Key("loading.shear_stiffness_Pa_per_m"));
-    if ((slow_->n_steps() - n_before) % record::steps_per_slow_row == 0 &&
-        (n_rows < record::all_slow_rows || has_changed()))
-      give_row();
-    const double rate = state.fastest_m_per_s();
-    const bool has_turned = turns.see(friction());
-    if (has_turned || rate > row_factor * row_rate_m_per_s || rate < row_rate_m_per_s / row_factor) {
+    if (creep_->is_row_due(*slow_)) give_row();
+    if (creep_->is_loading_row_due(state, initial_.tributary_m))
       loading_.push_back(slow_row(LoadingPhase::creep, from));
-      row_rate_m_per_s = rate;
-    }
+    if (!monitor_(0, 0))
+      throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after normal loading", state.time_s));
     return true;
   };
   bool begins = false;
   while (!begins && state.time_s < path_.end_s()) {
     slow_->set_edge_speed(path_.speed_m_per_s(state.time_s, state.shear_m + rest_.moved_m));
-    begins = slow_->slip_until(path_.part_end_s(state.time_s), rate_m_per_s, after_step);
+    begins =
+        slow_->slip_until(path_.part_end_s(state.time_s), inertia_slip_rate_m_per_s(problem_), after_step);
   }
   give_row();
+  creep_.reset();
   loading_.push_back(slow_row(begins ? LoadingPhase::event_begins : LoadingPhase::loaded, from));
   if (!begins) return false;
   std::vector<double> per_shear;
@@ -574,10 +485,14 @@ void Sequence::resume_event(const InitialState& initial) {
 
 void Sequence::serialize(StateArchive& archive) {
   auto rows = loading_;
-  if (!archive.is_loading() && !is_in_event()) rows.resize(n_rows_at_rest_);
+  bool is_creeping = creep_.has_value();
+  if (!archive.is_loading() && !is_in_event() && !is_creeping) rows.resize(n_rows_at_rest_);
   archive(rest_.time_s, rest_.moved_m, rest_.shear_m, rest_.contact, rest_.u_x_m, rest_.law_states,
-          rest_.rests_since_s, u_begins_x_m_, n_rows_at_rest_, rows, events_);
-  if (!archive.is_loading()) return;
+          rest_.rests_since_s, u_begins_x_m_, n_rows_at_rest_, rows, events_, is_creeping);
+  if (!archive.is_loading()) {
+    if (creep_) archive(*slow_, *creep_);
+    return;
+  }
   loading_ = std::move(rows);
   const std::size_t n = initial_.tributary_m.size();
   const std::size_t n_at_rest = slow_ || !events_.empty() ? n : 0;
@@ -594,13 +509,18 @@ void Sequence::serialize(StateArchive& archive) {
           rest_.law_states.size() == (slow_ ? problem_.friction.law.states().size() : 0) &&
           std::ranges::all_of(rest_.law_states, [&](const auto& values) { return is_of(values, n); }) &&
           is_of(rest_.rests_since_s, problem_.heals() ? n : 0) &&
-          is_of(u_begins_x_m_, is_in_event() ? n : 0) && n_rows_at_rest_ <= loading_.size() &&
-          std::isfinite(rest_.shear_m) && std::isfinite(rest_.time_s) && std::isfinite(rest_.moved_m) &&
-          (slow_ ? loading_.size() >= n_rows : loading_.size() == n_rows) &&
+          is_of(u_begins_x_m_, is_in_event() ? n : 0) && n_rows_at_rest_ > 0 &&
+          n_rows_at_rest_ <= loading_.size() && std::isfinite(rest_.shear_m) && std::isfinite(rest_.time_s) &&
+          std::isfinite(rest_.moved_m) && (slow_ ? loading_.size() >= n_rows : loading_.size() == n_rows) &&
           std::ranges::all_of(loading_,
                               [](const LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),
       "a sequence");
   if (!events_.empty()) equilibrate();
+  if (!is_creeping) return;
+  require_possible(slow_ != nullptr && !is_in_event(), "slow slip");
+  archive(*slow_);
+  creep_.emplace(*slow_, initial_.tributary_m);
+  archive(*creep_);
 }
 
 }  // namespace slipfront::run

@@ -9,6 +9,7 @@
 
 #include "motion/quasi_dynamic.hpp"
 #include "record/sequence.hpp"
+#include "run/creep.hpp"
 #include "run/fracture.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
@@ -46,12 +47,18 @@ class Sequence {
   const std::vector<record::SequenceEvent>& events() const { return events_; }
   const std::vector<record::LoadingRow>& loading() const { return loading_; }
 
+  /// Whether slow slip is under way; the monitor is asked after each of its steps.
+  bool is_creeping() const { return creep_.has_value(); }
+  /// Rows of it so far.
+  std::size_t n_slow_rows() const { return creep_->n_rows(); }
+  /// Places of the interface nodes.
+  const std::vector<double>& x_m() const { return at_rest_.tractions.x_m; }
   /// Whether an event has begun that has not been recorded.
   bool is_in_event() const { return !u_begins_x_m_.empty(); }
   /// After serialize in an event: the state in which it has begun, whose displacements are not needed.
   void resume_event(const InitialState& initial);
-  /// Where an event has begun, or where the last one has ended: what followed it without an event is left
-  /// out.
+  /// Where an event has begun, in slow slip, or where the last event has ended: what followed it without one
+  /// is left out.
   void serialize(StateArchive& archive);
 
  private:
@@ -75,6 +82,7 @@ class Sequence {
   /// The same at the first shear since normal loading, at most that of sequence.end_s, at which t/p inside
   /// reaches mu_s, which grows.
   void heal_to_critical();
+  void begin_creep();
   bool slip_to_next(const SlowRows& slow_rows);
   /// @param u_x_per_shear  see statics::Statics::slid_to
   statics::Equilibrium slid_to(const motion::QuasiDynamicState& state,
@@ -110,7 +118,8 @@ class Sequence {
   std::optional<solid::Operator> base_;
   std::optional<FrontPredictor> predictor_;  ///< of laws with a fracture energy
   motion::Monitor monitor_;
-  std::unique_ptr<motion::QuasiDynamicSlip> slow_;  ///< of a law with a state
+  std::unique_ptr<motion::QuasiDynamicSlip> slow_;  ///< of a law that never sticks
+  std::optional<Creep> creep_;                      ///< slow slip under way
   statics::Equilibrium at_rest_;                    ///< before the next event
   RestState rest_;                                  ///< of a law without a state empty before the first event
   std::vector<double>

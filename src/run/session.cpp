@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <csignal>
 #include <functional>
@@ -32,7 +33,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A run on rank 0, from phase to phase. Between two of them, and in ramps and events, it keeps checkpoints.
+/// A run on rank 0, from phase to phase. It keeps checkpoints between two of them, in ramps, slow slip and
+/// events.
 class Session {
  public:
   /// @param sessions  that were before, whose work is in the folder
@@ -94,6 +96,8 @@ class Session {
   std::string part() const { return sequence_ ? fmt::format("event {}", number()) : "event"; }
   /// Of the event that comes next or is under way, from 1.
   std::size_t number() const { return sequence_->events().size() + 1; }
+  fs::path slow_dir() const { return results::slow_folder(dir_, number()); }
+  results::RunFiles slow_files() const { return {history_table(problem_, sequence_->x_m()), {}}; }
   fs::path event_dir() const { return sequence_ ? results::event_folder(dir_, number()) : dir_; }
   /// Where a finished event is, or the slow slip before it: with the sequence that this one extends perhaps.
   fs::path done(fs::path (*folder_of)(const fs::path&, std::size_t), std::size_t k) const {
@@ -116,9 +120,10 @@ class Session {
   std::string keeps_;  ///< note of a checkpoint that was asked for
 
   std::optional<Sequence> sequence_;
-  bool extends_ = false;                ///< a sequence that is complete in the folder
-  std::vector<std::string> sums_;       ///< of the lists of checksums of the events that are done
-  std::vector<std::string> slow_sums_;  ///< of the histories of slow slip before them
+  bool extends_ = false;                       ///< a sequence that is complete in the folder
+  std::vector<std::string> sums_;              ///< of the lists of checksums of the events that are done
+  std::vector<std::string> slow_sums_;         ///< of the histories of slow slip before them
+  std::optional<results::ResultStream> slow_;  ///< of the slow slip under way
   motion::Stepper* ramp_stepper_ = nullptr;
   motion::RampRun* ramp_ = nullptr;  ///< under way
   EventRoot root_;
@@ -218,6 +223,11 @@ void Session::read_sequence(results::InputArchive& kept, bool in_event) {
                          sequence_->is_in_event() == in_event,
                      "events");
     slow_sums_.resize(n_slow);
+    if (sequence_->is_creeping()) {
+      results::ResultStream::Extents extents;
+      kept(extents);
+      slow_.emplace(slow_dir(), slow_files(), extents);
+    }
     if (!in_event) kept.close();
   });
   extends_ = !sums_.empty() && !files::is_folder(results::event_folder(dir_, 1));
@@ -312,19 +322,17 @@ void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper
 }
 
 const InitialState* Session::next_state() {
-  std::optional<results::ResultStream> slow;
-  // Ordinary slow slip has fewer rows.
-  std::size_t n_rows = 0, told_at = 4096;
   const auto take_row = [&](const record::History& row) {
-    if (!slow) {
-      const auto dir = results::slow_folder(dir_, number());
-      files::make_folders(dir);
-      slow.emplace(dir, results::RunFiles{history_table(problem_, row.x_m), {}});
+    if (!slow_) {
+      files::make_folders(slow_dir());
+      slow_.emplace(slow_dir(), slow_files());
       began_ = true;
     }
-    slow->sample(row);
-    if (++n_rows < told_at) return;
-    told_at *= 2;
+    slow_->sample(row);
+    // Ordinary slow slip has fewer rows.
+    constexpr std::size_t many = 4096;
+    const auto n_rows = sequence_->n_slow_rows();
+    if (n_rows < many || !std::has_single_bit(n_rows)) return;
     double fastest_m_per_s = 0;
     for (const double V : row.slip_rate_m_per_s) fastest_m_per_s = std::max(fastest_m_per_s, std::abs(V));
     hooks_.note(fmt::format("slow slip before {}: {} rows to {:.6g} s, fastest node {:.3g} m/s", part(),
@@ -332,10 +340,10 @@ const InitialState* Session::next_state() {
   };
   try {
     const auto* initial = sequence_->next(take_row);
-    if (slow) {
-      slow->finish();
-      slow_sums_.push_back(
-          files::sha256_of_file(results::slow_folder(dir_, number()) / results::history_file));
+    if (slow_) {
+      slow_->finish();
+      slow_.reset();
+      slow_sums_.push_back(files::sha256_of_file(slow_dir() / results::history_file));
     }
     return initial;
   } catch (const UserError& error) {
@@ -379,6 +387,11 @@ void Session::require_parts_unchanged() const {
 
 bool Session::look_at_statics() {
   const Request request = hooks_.request();
+  if (sequence_ && sequence_->is_creeping()) {
+    if (request != Request::none || seconds_since(kept_) >= options_.keep_every_wall_s) keep();
+    if (request == Request::keep) hooks_.note(fmt::format("checkpoint in the slow slip before {}", part()));
+    return request != Request::stop;
+  }
   if (request == Request::keep) hooks_.note("no checkpoint: there is nothing to save before the first step");
   return request != Request::stop;
 }
@@ -401,6 +414,7 @@ void Session::keep() {
     if (sequence_) {
       archive(sums_, slow_sums_);
       sequence_->serialize(archive);
+      if (sequence_->is_creeping()) archive(slow_->keep());
     }
     if (event_) event_->write(archive);
     if (ramp_ != nullptr) {

@@ -589,6 +589,28 @@ TEST_F(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
   expect_same_as_whole(sequence_case(2));
 }
 
+TEST_F(SequenceInAFolder, SlowSlipGoesOnWhereItWasStopped) {
+  const auto config = rate_and_state_case(2);
+  std::vector<std::size_t> n_asked;
+  for (const int stop_at : {40, 400, 1500}) {
+    fs::remove_all(dir_);
+    fs::remove_all(folder_ / "whole");
+    int n = 0;
+    SessionHooks hooks = undisturbed;
+    hooks.request = [&] { return ++n == stop_at ? Request::stop : Request::none; };
+    EXPECT_THROW(start_sequence(dir_, config, hooks), Interrupted);
+    EXPECT_FALSE(fs::exists(unfinished_ / "events/0001"));
+    hooks.request = [&] { return ++n, Request::none; };
+    n = 0;
+    results::ResultFolder held(dir_, run_work);
+    resume(held, nullptr, test::with_threads(1), hooks);
+    n_asked.push_back(static_cast<std::size_t>(n));
+    start_sequence(folder_ / "whole", config);
+    EXPECT_EQ(tables_in(dir_), tables_in(folder_ / "whole")) << stop_at;
+  }
+  EXPECT_GT(n_asked[0], n_asked[1] + 300);  // what was slipped before is not slipped again
+}
+
 TEST_F(SequenceInAFolder, WhatTheFirstSlowSlipHasComeToIsKept) {
   SessionHooks failing = undisturbed;
   int n_asked = 0;
