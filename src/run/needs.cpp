@@ -210,7 +210,8 @@ double slow_steps_of(const input::Case& config) {
   // Stiffness against waves of two elements.
   const double stiffness_Pa_per_m =
       0.5 * std::numbers::pi * stability::modulus_Pa(bodies_of(config)) / config.plate.element_size_m;
-  return of_changes + slip_m * stiffness_Pa_per_m / (of_pair * interface::direct_effect(config.friction) * p_Pa);
+  return of_changes +
+         slip_m * stiffness_Pa_per_m / (of_pair * interface::direct_effect(config.friction) * p_Pa);
 }
 
 /// The existing folder in which `folder` is or will be made.
