@@ -372,9 +372,9 @@ class Case:
         What can be checked without solving anything: memory, geometry; raises CaseError.
         """
 
-def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Callable | None, progress: object | None) -> None:
+def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Callable | None, initial: Callable | None, states: Sequence[tuple[str, str]], progress: object | None) -> None:
     """
-    Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) the list of states after a time.
+    Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) the list of states after a time. states: names and units of states of its own, of which initial(t_Pa, p_Pa) gives the list.
     """
 
 def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
