@@ -403,7 +403,8 @@ def wave_speeds(**material: Any) -> _core.WaveSpeeds:
 
 
 def stable_step_s(element_size_m: float, **material: Any) -> float:
-    """Largest stable time step of the explicit scheme in square elements, s; with the material's damping.
+    """Largest stable time step of the explicit scheme in square elements, s; with the material's damping, by
+    default that of the default case.
 
     The step of a plate may be smaller by what its corners ask for: `info` tells it."""
     size_m = number(element_size_m, "element_size_m", above=0, finite=True)

@@ -443,7 +443,7 @@ time = {end_s = 1e-5, stepper = "plain"}
 loading = {mean_pressure_Pa = 5e6, tilt_difference_m = 2e-4, shear_over_critical = 0.8}
 """,
     "force": """
-event.kind = "left"
+event = {kind = "left", trigger_over_missing = 3.0}
 plate = {element_size_m = 5e-3, width_m = 0.2, height_m = 0.1, corner = "fillet", fillet_radius_m = 0.02}
 base.kind = "rigid"
 friction.law = "velocity_weakening"
