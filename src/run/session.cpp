@@ -138,11 +138,13 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
 }
 
 Finished Session::extend() {
+  began_ = false;
   return keeping_failures([&] {
     begin(nullptr);
     results::InputArchive archive(folder_.dir() / end_file);
     read_sequence(archive, false);
     keep();
+    began_ = true;
     return go_on({});
   });
 }
