@@ -86,7 +86,7 @@ TEST(Machine, LetsABlockSwingOnItsSpring) {
   solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
   std::ranges::fill(u.y, 1e-3);  // in the air
   std::ranges::fill(v.x, 2.0);   // beyond the machine by 1 m/s
-  const std::vector<BodySource> body = {{mesh, material, nullptr, nullptr, {K_Pa, rigid}}};
+  const std::vector<BodySource> body = {{mesh, material, nullptr, nullptr, {K_Pa / 0.02, rigid}}};
   UnderWay way({body, {interface::Coulomb{0}}, support::one_substep()}, support::in_flight(mesh, u, v), 1);
   way.advance_to(0.8 * 2 * std::numbers::pi / omega);
   const double end_s = way.stepper.time_s();

@@ -36,7 +36,10 @@ mesh::Plate plate_of(const Sample& sample) {
 
 boundary::Machine machine_of(const Sample& sample) {
   const boundary::Pusher pusher{4e-3, 20e-3};
-  return {sample.shear_Pa, sample.normal_Pa, sample.is_pushed ? pusher : boundary::Pusher{}};
+  const double width_m = plate_of(sample).width_m,
+               moved_m = sample.is_pushed ? pusher.to_m - pusher.from_m : width_m;
+  return {sample.shear_Pa / moved_m, sample.normal_Pa / width_m,
+          sample.is_pushed ? pusher : boundary::Pusher{}};
 }
 
 Statics statics_of(const mesh::Mesh& mesh, const boundary::Machine& machine, const Loading& loading,
