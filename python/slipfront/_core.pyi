@@ -377,9 +377,9 @@ def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, evolve: Call
     Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes]; or, under a law with states, mu_of(slip_rate_m_per_s, *states), and evolve(dt_s, slip_rate_m_per_s, *states) the list of states after a time. states: names and units of states of its own, of which initial(t_Pa, p_Pa) gives the list.
     """
 
-def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
+def resume(dir: str | os.PathLike, case: Case | None, threads: int | None, checkpoint_every_s: float, progress: object | None, observers: Sequence[tuple[float, object]]) -> None:
     """
-    Goes on with the unfinished run or sequence of a folder; does nothing where it is complete.
+    Goes on with the unfinished run or sequence of a folder, or with a sequence that is complete and that the case continues; does nothing where it is complete.
     """
 
 class Mesh:
