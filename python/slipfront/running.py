@@ -259,7 +259,7 @@ def resume(
     folder, n_threads = kept_path(output, "output"), threads_of(threads)
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
     called = observers_of(observers)
-    given = None if case is None else make_case(case)
+    given = None if case is None else make_case(case, None, {})
     compute(lambda show: _core.resume(folder, given, n_threads, every_s, show, called), progress)
     return opened(folder)
 

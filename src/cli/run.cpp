@@ -256,13 +256,16 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
   catch_interrupts();
   try {
     auto hooks = cli::hooks(options.quiet);
-    if (!options.quiet) hooks.event_done = print_event;
+    if (!options.quiet)
+      hooks.event_done = [&](std::size_t number, const record::SequenceEvent& event) {
+        if (given && number == 1) print("{}\n", set_up(given->problem));
+        print_event(number, event);
+      };
     const auto print_notes = [&] {
       for (const auto& note : given ? given->file.notes() : std::vector<std::string>())
         if (!options.quiet) print("note: {}\n", note);
     };
     const bool is_sequence = given && given->problem.is_sequence();
-    if (is_sequence && !options.quiet) print("{}\n", set_up(given->problem));
     if (is_sequence) print_notes();
     const auto finished = options.restart
                               ? run::resume(folder, given ? &given->problem : nullptr, options.session, hooks)

@@ -525,6 +525,16 @@ f_w = 0.1
 V_w_m_per_s = 0.2
 tip_slip_rate_m_per_s = 0.05
 """,
+    "two states": UNIFORM
+    + """
+[friction]
+law = "rate_and_state_aging_two"
+b1 = 0.01
+b2 = 0.005
+d_c1_m = 1e-6
+d_c2_m = 1e-5
+tip_slip_rate_m_per_s = 0.05
+""",
     "sequence": """
 plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3, corner = "relief"}
 base.kind = "rigid"

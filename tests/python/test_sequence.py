@@ -116,11 +116,22 @@ def test_an_observer_sees_each_event(tmp_path):
     assert begun == [0.0] * N_EVENTS
 
 
-def test_a_law_in_python_is_of_one_event():
-    with pytest.raises(
-        slipfront.CaseError, match="sequence.max_events is 4; a law in Python is of one event"
-    ):
-        slipfront.run_with_law(SEQUENCE, lambda rate, slip: np.full_like(slip, 1.3))
+def test_a_sequence_that_is_complete_goes_on(folder, tmp_path):
+    """By the package and by the command; the tables are those of one that was asked for from the start."""
+    later = write_case(tmp_path, SEQUENCE.replace(f"events = {N_EVENTS}", f"events = {N_EVENTS + 1}"))
+    whole = tmp_path / "whole"
+    slipfront.run(later, output=whole, progress=False)
+    for name in ("package", "command"):
+        shutil.copytree(folder, tmp_path / name)
+    run = slipfront.resume(tmp_path / "package", later, progress=False)
+    assert len(run.runs) == N_EVENTS + 1
+    program("run", later, "--restart", "command", "-q", cwd=tmp_path)
+    for name in ("package", "command"):
+        tables = ("events.csv", "loading.csv", f"events/000{N_EVENTS + 1}/fronts.csv")
+        require_same_bytes(tmp_path / name, whole, *tables)
+    slipfront.resume(tmp_path / "package", later, progress=False)  # is complete
+    other = SEQUENCE.replace("4e-3", "5e-3")
+    assert "is another case" in refused(lambda: slipfront.resume(tmp_path / "package", other, progress=False))
 
 
 @pytest.mark.parametrize("study", ["convergence", "interface-step"])
@@ -466,7 +477,7 @@ def test_stable_sliding_is_shown_without_an_event(tmp_path):
     assert [name for name in plots if f'id="{name}-plot"' in text] == ["forces", "phases"]
     loading = slipfront.open(tmp_path / "out").loading
     np.testing.assert_allclose(shown["loading"]["ratio"], loading["shear_over_normal"], rtol=1e-4, atol=1e-9)
-    assert shown["phases"]["borders"][-1] == 1 and "dashed" not in text
+    assert shown["phases"]["borders"][-1] == 1
     force, phases, _ = draw(slipfront.open(tmp_path / "out")).figure.axes
     np.testing.assert_array_equal(force.lines[0].get_ydata(), loading["shear_over_normal"])
     assert phases.get_xlim() == (0, 100)

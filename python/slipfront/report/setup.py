@@ -127,7 +127,7 @@ def forces(found: dict[str, Any]) -> list[str]:
 
 def machine(run: Opened) -> str:
     """Stiffness and path of what loads the plate, in words; empty of a rigid machine at a constant speed."""
-    along_x, down = (run.entry("loading", f"{name}_stiffness_Pa") for name in ("shear", "normal"))
+    along_x, down = (run.entry("loading", f"{name}_stiffness_Pa_per_m") for name in ("shear", "normal"))
     times_s, shears_m = (run.entry("sequence", name) for name in ("times_s", "shears_m"))
     parts = []
     if is_number(along_x) and math.isfinite(along_x):
