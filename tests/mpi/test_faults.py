@@ -341,7 +341,7 @@ def test_killed_while_fields_are_written(mpirun, faulty, case, undisturbed, rank
 
 
 OTHERS_DO_NOT_SEE = (
-    "note: fields.vtkhdf is written by rank 0 alone: others do not see out, or cannot write there"
+    "note: fields.vtkhdf is written by rank 0 alone: others do not see out/unfinished, or cannot write there"
 )
 
 
