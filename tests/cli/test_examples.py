@@ -174,7 +174,7 @@ def test_precursors_grow_with_the_force_until_all_slides_below_mu_s(folder):
     assert 0.32 < friction[-1] < 0.37
     # Fronts near c_S outrun what is predicted; those of the first events less.
     beyond_m = ends_m - large.predicted_to_x_m.to_numpy()
-    assert np.nanmin(beyond_m[:3]) < 0.015 and np.nanmin(beyond_m[-4:]) > 0.03
+    assert np.nanmax(beyond_m[:3]) < np.nanmin(beyond_m[-4:]) and np.nanmin(beyond_m[-4:]) > 0.03
 
 
 def test_stick_slip_runs_away_from_half_of_the_nucleation_length(folder):
