@@ -460,16 +460,18 @@ TEST(Sequences, AreTheSameWhereverTheyWereStopped) {
 TEST(Sequences, AreExtended) {
   auto healing = sequence_case(4);
   healing.sequence.healing_per_e_fold = 0.02;
-  for (const auto& [name, longer] : {std::pair{"plain", sequence_case(4)},
-                                     {"healing", healing},
-                                     {"law with a state", rate_and_state_case(3)},
-                                     {"ended by time", sequence_case(3)}}) {
+  for (const auto& sample : {std::pair{"plain", sequence_case(4)},
+                             {"healing", healing},
+                             {"law with a state", rate_and_state_case(3)},
+                             {"ended by time", sequence_case(3)}}) {
+    const std::string name = sample.first;
+    const auto& longer = sample.second;
     SCOPED_TRACE(name);
     const test::TemporaryFolder folder;
     const auto whole = folder / "whole", extended = folder / "extended";
     const auto events = start_sequence(whole, longer).events;
     auto shorter = longer;
-    if (std::string(name) == "ended by time")
+    if (name == "ended by time")
       shorter.sequence.end_s = 0.5 * (events[0].begin_s + events[1].begin_s);
     else
       shorter.sequence.max_events = longer.sequence.max_events - 1;
