@@ -14,11 +14,16 @@
 
 namespace slipfront::problem {
 
+std::vector<Body> bodies_of(const input::Case& config) {
+  std::vector<Body> bodies = {{config.plate, config.material, config.machine}};
+  if (has_base_body(config)) bodies.push_back({base_plate(config), base_material(config)});
+  return bodies;
+}
+
 Problem make_problem(const input::Case& config) {
   Problem problem;
   problem.source = source_of(config);
-  problem.bodies.push_back({config.plate, config.material, config.machine});
-  if (has_base_body(config)) problem.bodies.push_back({base_plate(config), base_material(config)});
+  problem.bodies = bodies_of(config);
   problem.loading = config.loading;
   problem.shear_speed_m_per_s = config.loading.shear_speed_m_per_s;
   if (input::is_prestressed(config)) problem.prestress = config.prestress;
@@ -36,9 +41,9 @@ Problem make_problem(const input::Case& config) {
   return problem;
 }
 
-stability::Bodies materials_of(const Problem& problem) {
-  stability::Bodies both = problem.above().material;
-  if (problem.has_below()) both.below = problem.below().material;
+stability::Bodies materials_of(const std::vector<Body>& bodies) {
+  stability::Bodies both = bodies.front().material;
+  if (bodies.size() > 1) both.below = bodies.back().material;
   return both;
 }
 

@@ -46,7 +46,6 @@ struct Source {
   std::string case_text;  ///< each key with its value, the tables by the names that a run's folder has
   std::string prestress_table, friction_table;
   std::string state_key;  ///< the same for two cases if and only if they share their state before the event
-  std::string endless_text;  ///< case_text but for what ends a sequence
 
   /// What tells cases apart.
   template <class Archive>
@@ -111,8 +110,14 @@ struct Problem {
 /// The problem of a case: nothing but its values, and the tables that it has read.
 Problem make_problem(const input::Case& config);
 
+/// The bodies of a case alone.
+std::vector<Body> bodies_of(const input::Case& config);
+
 /// The materials on both sides of the interface.
-stability::Bodies materials_of(const Problem& problem);
+stability::Bodies materials_of(const std::vector<Body>& bodies);
+inline stability::Bodies materials_of(const Problem& problem) {
+  return materials_of(problem.bodies);
+}
 /// The largest that a slip rate can be by linear elasticity, see motion::Watch.
 double fastest_speed_m_per_s(const Problem& problem);
 /// Speed of the loaded edge during the event; a pusher stays where it is.

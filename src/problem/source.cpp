@@ -14,16 +14,6 @@ namespace slipfront::problem {
 
 namespace {
 
-/// What ends a sequence left out.
-input::Case endless(input::Case config) {
-  const input::Sequence endless;
-  config.sequence.max_events = endless.max_events;
-  config.sequence.end_s = endless.end_s;
-  config.sequence.to_global_sliding = endless.to_global_sliding;
-  config.sequence.path = endless.path;
-  return config;
-}
-
 std::string resolved_text(input::Case config) {
   if (!config.prestress.file.empty()) config.prestress.file = prestress_file;
   if (!config.friction_along_x.file.empty()) config.friction_along_x.file = friction_file;
@@ -68,6 +58,17 @@ std::string first_difference(const std::string& text, const std::string& other) 
   return files::one_line(line.substr(0, line.find("  #")));
 }
 
+/// The text of a sequence's case with an end that is the same for all; its other keys count as before.
+std::string without_end(const Source& source) {
+  auto config = input::parse_case(source.case_text, case_file);
+  auto& sequence = config.sequence;
+  sequence.max_events = 2;
+  sequence.end_s = infinity;
+  sequence.to_global_sliding = false;
+  sequence.path = {};
+  return input::to_toml(config);
+}
+
 void require_same(const std::string& wanted, const std::string& kept, const std::string& name) {
   if (wanted != kept)
     throw UserError("{}: is another case than the one that was begun, which has \"{}\"; start a new run",
@@ -77,12 +78,8 @@ void require_same(const std::string& wanted, const std::string& kept, const std:
 }  // namespace
 
 Source source_of(const input::Case& config) {
-  return {config.title,
-          resolved_text(config),
-          config.prestress.table.text,
-          config.friction_along_x.table.text,
-          state_key(config),
-          resolved_text(endless(config))};
+  return {config.title, resolved_text(config), config.prestress.table.text,
+          config.friction_along_x.table.text, state_key(config)};
 }
 
 void write_case(const std::filesystem::path& dir, const Source& source) {
@@ -111,7 +108,7 @@ bool is_continuation(const Problem& problem, const Problem& done) {
     return values.size() >= begin.size() && std::equal(begin.begin(), begin.end(), values.begin());
   };
   const auto &path = problem.sequence.path, &done_path = done.sequence.path;
-  return problem.is_sequence() && done.is_sequence() && now.endless_text == then.endless_text &&
+  return problem.is_sequence() && done.is_sequence() && without_end(now) == without_end(then) &&
          now.prestress_table == then.prestress_table && now.friction_table == then.friction_table &&
          path.times_s.empty() == done_path.times_s.empty() && begins_as(path.times_s, done_path.times_s) &&
          begins_as(path.shears_m, done_path.shears_m);

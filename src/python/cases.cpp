@@ -215,7 +215,7 @@ void resume(const fs::path& dir, const input::CaseFile* given, std::optional<int
 stability::WellPosedness well_posedness(const input::CaseFile& given, double pressure_Pa,
                                         double element_size_m, double longest_wavelength_m) {
   const auto& config = given.config();
-  return stability::well_posedness(materials_of(problem::make_problem(config)), config.friction, pressure_Pa,
+  return stability::well_posedness(materials_of(problem::bodies_of(config)), config.friction, pressure_Pa,
                                    element_size_m, longest_wavelength_m, config.regularisation);
 }
 

@@ -24,7 +24,7 @@ struct Field {
   fracture::TipField field;
 
   Field(const input::CaseFile& given, double speed, int along_x)
-      : bodies(materials_of(problem::make_problem(given.config()))),
+      : bodies(materials_of(problem::bodies_of(given.config()))),
         speed_m_per_s(speed),
         field(bodies, speed, along_x) {
     require(along_x == 1 || along_x == -1, "along_x must be 1 or -1");

@@ -55,7 +55,7 @@ nb::dict fracture_of_history(const input::CaseFile& bodies, const Values& time_s
   const auto breakdown = interface::breakdown_from_history(history, threshold_m_per_s, cohesion_Pa);
   const auto tip_slip = motion::tip_slip_from_history(history, threshold_m_per_s);
   const fracture::Recorded recorded{history.x_m, breakdown, tip_slip};
-  const auto of = materials_of(problem::make_problem(bodies.config()));
+  const auto of = materials_of(problem::bodies_of(bodies.config()));
   std::vector<std::vector<double>> of_nodes(record::breakdown_fields.size()),
       of_points(fracture::passage_fields.size());
   const Points points{front_id, direction, node, point_x_m, onset_s, v_tip_m_per_s, t_s_Pa};
