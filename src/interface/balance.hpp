@@ -48,13 +48,15 @@ template <class F, class V>
 inline V root_between(const F& f, V a, V f_a, V b, V f_b, V nothing) {
   constexpr double rounding = 1e-14;
   constexpr int most = 200;
+  const auto nearest = [&] { return select(absolute(f_a) < absolute(f_b), a, b); };
   Mask<V> goes_on = (f_a > 0) != (f_b > 0);
+  if (!any(goes_on)) return nearest();
   V share = f_a / (f_a - f_b);
   for (int i = 0; i < most; ++i) {
-    const V nearest = select(absolute(f_a) < absolute(f_b), absolute(a), absolute(b));
-    const V least = (rounding * nearest + nothing) / absolute(b - a);
-    goes_on = goes_on && least < 0.5 && f_a != 0 && f_b != 0;
+    const V small = rounding * absolute(nearest()) + nothing, width = absolute(b - a);
+    goes_on = goes_on && small < 0.5 * width && f_a != 0 && f_b != 0;
     if (!any(goes_on)) break;
+    const V least = small / width;
     share = select(share > least, select(share < 1 - least, share, 1 - least), least);
     const V x = select(goes_on, a + share * (b - a), a), f_x = f(x);
     const Mask<V> passed = (f_x > 0) != (f_a > 0);
@@ -69,7 +71,7 @@ inline V root_between(const F& f, V a, V f_a, V b, V f_b, V nothing) {
         f_a / (f_b - f_a) * f_c / (f_b - f_c) + (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b),
         V{} + 0.5);
   }
-  return select(absolute(f_a) < absolute(f_b), a, b);
+  return nearest();
 }
 
 /// ln(most/V) of the slip rate V that friction leaves of `most`, the rate without it: k mu(V) = 1 - V/most,
