@@ -66,7 +66,7 @@ if(SLIPFRONT_PYTHON)
 endif()
 
 foreach(module base threads processes files record mesh solid boundary interface stability fronts fracture statics motion
-        input problem results run)
+        input problem results setup advice run)
   install(DIRECTORY src/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipfront COMPONENT development
           FILES_MATCHING PATTERN *.hpp)
 endforeach()

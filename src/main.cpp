@@ -9,7 +9,6 @@
 #include "cli/python_command.hpp"
 #include "processes/processes.hpp"
 #include "run/session.hpp"
-#include "run/subdomains.hpp"
 
 namespace {
 

@@ -21,7 +21,7 @@ int run(const char* file) {
               solid::longitudinal_speed_m_per_s(config.material), solid::shear_speed_m_per_s(config.material),
               solid::rayleigh_speed_m_per_s(config.material));
   const auto go_on = [](std::int64_t, std::int64_t) { return true; };
-  const run::InitialState initial = run::make_initial_state(config, go_on);
+  const InitialState initial = setup::make_initial_state(config, go_on);
   motion::Observers observers;
   observers.push_back(std::make_unique<SlipLimit>(20e-6, 1e-6));
   const run::Result result = run::run_from(config, initial, go_on, {}, std::move(observers));

@@ -12,6 +12,7 @@
 #include <random>
 #include <thread>
 
+#include "advice/needs.hpp"
 #include "base/budget.hpp"
 #include "base/clock.hpp"
 #include "fronts/fit.hpp"
@@ -22,7 +23,6 @@
 #include "motion/observers/onsets.hpp"
 #include "motion/stepper.hpp"
 #include "problem/problem.hpp"
-#include "run/needs.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
 #include "statics/prestress.hpp"
@@ -166,7 +166,7 @@ Rate measure_path(const std::string& path, int columns, const motion::TimeSteppi
                   const motion::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
   const int rows = columns / 2;
   const double nodes = (columns + 1.0) * (rows + 1.0);
-  require_memory({{"its motion", run::motion_bytes(nodes), "a machine with more"}},
+  require_memory({{"its motion", advice::motion_bytes(nodes), "a machine with more"}},
                  fmt::format("a plate of {:.4g} nodes", nodes));
   const double before = resident_bytes();
   SlippingPlate plate(make_mesh(), time, execution);
@@ -211,7 +211,7 @@ EventRun measure_event(int columns, int threads) {
   const auto monitor = [](std::int64_t, std::int64_t) { return true; };
   auto start = Clock::now();
   const auto problem = problem::make_problem(config);
-  const auto initial = run::make_initial_state(problem, monitor);
+  const auto initial = setup::make_initial_state(problem, monitor);
   result.statics_s = seconds_since(start);
   start = Clock::now();
   const auto event = run::run_from(problem, initial, monitor, {.threads = threads});
@@ -228,7 +228,7 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const int rows = columns / 2;
   const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
   const auto chosen = statics::choose_solver(solver, n_unknowns);
-  require_memory({{"the statics", run::statics_bytes(chosen, n_unknowns, columns + 1.0),
+  require_memory({{"the statics", advice::statics_bytes(chosen, n_unknowns, columns + 1.0),
                    "fewer columns, or a machine with more"}},
                  fmt::format("a plate of {:.4g} static unknowns", n_unknowns));
   const auto mesh = mesh::make_plate(plate);

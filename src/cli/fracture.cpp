@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/fracture.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -12,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "advice/notes.hpp"
+#include "advice/prediction.hpp"
 #include "base/error.hpp"
 #include "cli/command.hpp"
 #include "cli/commands.hpp"
@@ -20,8 +20,7 @@
 #include "files/files.hpp"
 #include "fracture/prediction.hpp"
 #include "problem/problem.hpp"
-#include "run/initial_state.hpp"
-#include "run/notes.hpp"
+#include "setup/meshes.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -64,7 +63,7 @@ std::string csv(const fracture::Prediction& prediction) {
   return text;
 }
 
-std::string line_of(const run::FracturePrediction& p, const fracture::PredictedFront& front, double c_S) {
+std::string line_of(const advice::FracturePrediction& p, const fracture::PredictedFront& front, double c_S) {
   const auto& last = front.points.back();
   double fastest = 0;
   for (const auto& point : front.points) fastest = std::max(fastest, point.v_tip_m_per_s);
@@ -93,18 +92,18 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
   if (!options.output.empty()) require_own(options.output);
   const auto given = arguments.read();
   const auto problem = problem::make_problem(given.config());
-  run::TipFriction friction;
+  advice::TipFriction friction;
   friction.x_m = {0};
   if (options.fracture_energy_J_per_m2)
     friction.fracture_energy_J_per_m2 = {*options.fracture_energy_J_per_m2};
   if (options.residual_coefficient) friction.residual_coefficient = {*options.residual_coefficient};
-  std::optional<run::FrontPredictor> predictor;
+  std::optional<advice::FrontPredictor> predictor;
   try {
     given.placing_errors([&] { return predictor.emplace(problem), true; });
   } catch (const UserError& error) {
     if (!problem.is_slow()) throw;
-    given.placing_errors([&] { return run::check(problem); });  // else it is the case that is refused
-    print_output(fmt::format("note: {}\n", run::no_static_state(error)));
+    given.placing_errors([&] { return setup::check(problem); });  // else it is the case that is refused
+    print_output(fmt::format("note: {}\n", advice::no_static_state(error)));
     return;
   }
   const auto p = given.placing_errors([&] { return predictor->predict(friction, options.x_m); });

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "advice/info.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,7 +19,6 @@
 #include "files/text.hpp"
 #include "fracture/prediction.hpp"
 #include "problem/problem.hpp"
-#include "run/run.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -35,11 +36,11 @@ struct Listing {
   void add(const char* what, const std::string& value) { text += fmt::format("{:<32}{}\n", what, value); }
 };
 
-void add_wave_speeds(const run::Info& info, Listing& list) {
+void add_wave_speeds(const advice::Info& info, Listing& list) {
   list.add("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
   list.add("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
   list.add("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
-  const auto is_same = [&](const run::WaveSpeeds& s) {
+  const auto is_same = [&](const solid::WaveSpeeds& s) {
     return s.c_L == info.speeds.c_L && s.c_S == info.speeds.c_S && s.c_R == info.speeds.c_R;
   };
   if (!info.base_speeds || is_same(*info.base_speeds)) return;
@@ -51,13 +52,13 @@ void add_wave_speeds(const run::Info& info, Listing& list) {
                : "none: the two bodies differ too much");
 }
 
-void add_size(const run::Info& info, Listing& list) {
+void add_size(const advice::Info& info, Listing& list) {
   const auto irregular = info.n_irregular ? fmt::format(", {} off the regular grid", *info.n_irregular) : "";
   list.add("nodes", fmt::format("{} ({} on the interface{})", info.n_nodes, info.n_interface, irregular));
   list.add("cells", fmt::format("{}", info.n_cells));
 }
 
-void add_steps(const Problem& problem, const run::Info& info, Listing& list) {
+void add_steps(const Problem& problem, const advice::Info& info, Listing& list) {
   list.add("largest stable step", fmt::format("{:.4g} s{}", info.stable_step_s,
                                               info.base_speeds ? ", the smaller one of the bodies" : ""));
   list.add("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
@@ -94,7 +95,7 @@ void add_steps(const Problem& problem, const run::Info& info, Listing& list) {
              fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));
 }
 
-void add_costs(const run::Info& info, Listing& list) {
+void add_costs(const advice::Info& info, Listing& list) {
   const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", statics::name_of(info.solver)) : "";
   list.add("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
                                  info.solver_bytes * 1e-9, statics));
@@ -110,7 +111,7 @@ void add_costs(const run::Info& info, Listing& list) {
 }
 
 /// The forces and the displacements that give them.
-void add_loads(const run::ResolvedLoads& loads, bool is_pushed, bool heals, Listing& list) {
+void add_loads(const setup::ResolvedLoads& loads, bool is_pushed, bool heals, Listing& list) {
   list.add("normal force", fmt::format("{:.6g} N/m, a mean pressure of {:.6g} Pa", loads.normal_force_N_per_m,
                                        loads.mean_pressure_Pa));
   list.add("  upper edge pressed down", fmt::format("{:.6g} m at its left end, {:.6g} m at its right one",
@@ -133,7 +134,7 @@ std::string text_of(const stability::Spread& spread) {
 }
 
 /// What a law that weakens over a slip lets expect.
-void add_lengths(const run::RuptureOutlook& rupture, std::string_view law, Listing& list) {
+void add_lengths(const advice::RuptureOutlook& rupture, std::string_view law, Listing& list) {
   const auto& o = rupture.of_nodes;
   const bool never_sticks = rupture.tip_slip_rate_m_per_s.has_value();
   const auto add_zone = [&] {
@@ -168,7 +169,7 @@ void add_lengths(const run::RuptureOutlook& rupture, std::string_view law, Listi
 }
 
 /// In short what `slipfront fracture` tells.
-void add_cracks(const run::FracturePrediction& p, Listing& list) {
+void add_cracks(const advice::FracturePrediction& p, Listing& list) {
   const auto& of = p.of_fronts;
   auto text = p.covers_all ? "the first crack is the whole interface"
               : of.starts  ? fmt::format("the first crack, {:.3g} m, runs", of.first_length_m)
@@ -184,7 +185,7 @@ void add_cracks(const run::FracturePrediction& p, Listing& list) {
   list.add("fronts as cracks", text);
 }
 
-void add_rupture(const run::RuptureOutlook& rupture, std::string_view law, Listing& list) {
+void add_rupture(const advice::RuptureOutlook& rupture, std::string_view law, Listing& list) {
   if (rupture.tip_slip_rate_m_per_s) {
     list.add("a front's tip",
              fmt::format("where the slip rate passes {:.3g} m/s", *rupture.tip_slip_rate_m_per_s));
@@ -200,7 +201,7 @@ void add_rupture(const run::RuptureOutlook& rupture, std::string_view law, Listi
   add_lengths(rupture, law, list);
 }
 
-void add_mesh_choice(const Problem& problem, const run::MeshChoice& mesh, Listing& list) {
+void add_mesh_choice(const Problem& problem, const advice::MeshChoice& mesh, Listing& list) {
   const bool is_own = mesh.coarsenings == problem.above().plate.coarsenings &&
                       std::abs(mesh.element_size_m / problem.above().plate.element_size_m - 1) < 1e-6;
   if (is_own) {
@@ -216,7 +217,7 @@ void add_mesh_choice(const Problem& problem, const run::MeshChoice& mesh, Listin
                   mesh.process_zone_elements, mesh.n_nodes));
 }
 
-void add_stability_of_sliding(const run::Info& info, Listing& list) {
+void add_stability_of_sliding(const advice::Info& info, Listing& list) {
   const auto& w = info.well_posedness;
   if (!w.has_verdict()) {
     list.add("uniform sliding", w.statement);
@@ -245,7 +246,7 @@ std::string columns_text(const motion::Partition& partition) {
   return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
-void add_shared(const run::Info::Shared& shared, Listing& list) {
+void add_shared(const advice::Info::Shared& shared, Listing& list) {
   const auto& partition = shared.partition;
   list.add("shared by", fmt::format("{} ranks, each with a processor", partition.n_subdomains()));
   list.add("  columns of nodes of each",
@@ -266,7 +267,7 @@ void add_shared(const run::Info::Shared& shared, Listing& list) {
 void print_info(const CaseArguments& arguments, const std::optional<int>& n_processes) {
   const auto given = arguments.read();
   const auto problem = problem::make_problem(given.config());
-  const auto info = given.placing_errors([&] { return run::info(problem, n_processes); });
+  const auto info = given.placing_errors([&] { return advice::info(problem, n_processes); });
   Listing list;
   if (!problem.source.title.empty()) list.add("title", files::one_line(problem.source.title));
   list.add("set-up", set_up(problem));

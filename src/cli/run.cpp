@@ -8,6 +8,9 @@
 #include <optional>
 #include <thread>
 
+#include "advice/needs.hpp"
+#include "advice/outlook.hpp"
+#include "advice/prediction.hpp"
 #include "base/error.hpp"
 #include "cli/command.hpp"
 #include "cli/commands.hpp"
@@ -19,8 +22,8 @@
 #include "fronts/fit.hpp"
 #include "problem/source.hpp"
 #include "results/folder.hpp"
-#include "run/needs.hpp"
 #include "run/session.hpp"
+#include "setup/subdomains.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -54,7 +57,7 @@ void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
         ramp.record.n_onsets() - n_inside, n_inside);
 }
 
-void print_rupture(const run::RuptureOutlook& rupture) {
+void print_rupture(const advice::RuptureOutlook& rupture) {
   const auto& o = rupture.of_nodes;
   if (rupture.tip_slip_rate_m_per_s) {
     print("a front's tip is where the slip rate passes {:.3g} m/s\n", *rupture.tip_slip_rate_m_per_s);
@@ -74,7 +77,7 @@ void print_rupture(const run::RuptureOutlook& rupture) {
   print("{}\nexpected: {}\n", text, o.regime);
 }
 
-std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds) {
+std::string speed_text(const fronts::Front& front, const solid::WaveSpeeds& speeds) {
   const double median = median_speed_m_per_s(front);
   if (!std::isfinite(median)) return "speed undefined";
   const auto fast =
@@ -95,7 +98,7 @@ std::string fracture_text(const run::Result& result, std::size_t f) {
   const double G = fronts::median(G_slip), zone = fronts::median(zone_m);
   if (!(gamma > 0)) return {};
   auto text = fmt::format("  fracture energy {:.3g} J/m2 in the median", gamma);
-  if (!run::has_fracture_energy(result.problem)) text += " (of this mesh: the law has no length)";
+  if (!advice::has_fracture_energy(result.problem)) text += " (of this mesh: the law has no length)";
   // Few rows are those of a tip that hardly ran, or ran above the limiting speed.
   const auto n_known = std::ranges::count_if(G_slip, [](double g) { return std::isfinite(g); });
   if (2 * n_known > std::ssize(G_slip)) text += fmt::format(", G by slip {:.3g} J/m2", G);
@@ -125,10 +128,10 @@ void print_fronts(const run::Result& result) {
                fmt::join(of_trigger, ", "));
 }
 
-void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
+void print_summary(const run::Result& result, const InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   print("{}\n{}\n", outcome(result), set_up(result.problem));
-  if (initial.prescribed)
+  if (result.problem.is_prestressed())
     print("prescribed tractions, t/p {} to {:.4g}{}\n", initial.subcritical.peak_ratio < 0 ? "down" : "up",
           initial.subcritical.peak_ratio,
           result.problem.prestress->file.empty()
@@ -249,10 +252,13 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
   if (!options.restart) {
     folder.require_empty(options.overwrite);
     // What the machine cannot hold is refused before anything is written.
-    given->file.placing_errors([&] { run::require_fit(given->problem, folder.dir(), processes); });
+    given->file.placing_errors([&] { advice::require_fit(given->problem, folder.dir(), processes); });
   }
   if (processes.size() > 1 && given)
-    given->file.placing_errors([&] { run::require_divisible(given->problem, processes); });
+    given->file.placing_errors([&] {
+      advice::require_memory_fits(given->problem, processes);
+      setup::require_divisible(given->problem, processes);
+    });
   catch_interrupts();
   try {
     auto hooks = cli::hooks(options.quiet);

@@ -4,13 +4,14 @@
 #include <memory>
 #include <utility>
 
+#include "advice/needs.hpp"
+#include "advice/notes.hpp"
+#include "advice/outlook.hpp"
 #include "base/error.hpp"
 #include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
-#include "run/needs.hpp"
-#include "run/notes.hpp"
-#include "run/run.hpp"
+#include "setup/meshes.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -18,13 +19,15 @@ namespace {
 void validate(const CaseArguments& arguments, bool is_resolved) {
   const auto given = arguments.read();
   const auto problem = problem::make_problem(given.config());
-  const auto rupture =
-      given.placing_errors([&] { return run::rupture_outlook(problem, run::check(problem)); });
+  const auto rupture = given.placing_errors([&] {
+    advice::require_memory_fits(problem);
+    return advice::rupture_outlook(problem, setup::check(problem));
+  });
   if (is_resolved) return print_output(input::to_toml(given.config()));
   std::string text = fmt::format("{}: valid\n", arguments.file);
   auto notes = given.notes();
-  const double step_s = run::estimated_size(problem).step_s;
-  for (auto& note : run::notes_of_case(problem, rupture, step_s)) notes.push_back(std::move(note));
+  const double step_s = advice::estimated_size(problem).step_s;
+  for (auto& note : advice::notes_of_case(problem, rupture, step_s)) notes.push_back(std::move(note));
   for (const auto& note : notes) text += fmt::format("note: {}\n", note);
   print_output(text);
 }

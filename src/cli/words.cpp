@@ -130,7 +130,7 @@ std::string set_up(const Problem& problem) {
   return fmt::format("{}; {}; {}", bodies(problem), law(problem), event(problem));
 }
 
-std::string speed(double m_per_s, const run::WaveSpeeds& speeds) {
+std::string speed(double m_per_s, const solid::WaveSpeeds& speeds) {
   return fmt::format("{} ({:.2f} c_L, {:.2f} c_S)", engineering(m_per_s, "m/s"), m_per_s / speeds.c_L,
                      m_per_s / speeds.c_S);
 }

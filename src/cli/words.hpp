@@ -7,6 +7,7 @@
 #include "problem/problem.hpp"
 #include "record/sequence.hpp"
 #include "run/run.hpp"
+#include "solid/material.hpp"
 
 namespace slipfront::cli {
 
@@ -17,7 +18,7 @@ std::string engineering(double value, const char* unit, int digits = 4);
 std::string set_up(const Problem& problem);
 
 /// "1080 m/s (0.68 c_L, 1.21 c_S)"
-std::string speed(double m_per_s, const run::WaveSpeeds& speeds);
+std::string speed(double m_per_s, const solid::WaveSpeeds& speeds);
 
 /// What has become of a run: how far its longest front went, how fast, and where it ended.
 std::string outcome(const run::Result& result);

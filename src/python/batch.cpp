@@ -46,7 +46,7 @@ struct Velocities {
 struct BatchEvent {
   motion::EventEnd end = motion::EventEnd::end_time;
   std::string reason;
-  run::WaveSpeeds speeds;
+  solid::WaveSpeeds speeds;
   std::vector<fronts::Front> fronts;
   record::StaticState tractions;
   double inside_from_m = 0, inside_to_m = 0, peak_x_m = 0, critical_shear_m = 0;
@@ -58,7 +58,7 @@ struct BatchEvent {
   std::vector<Velocities> snapshots = {};
 };
 
-BatchEvent event_of(const run::Result& result, const run::InitialState& initial) {
+BatchEvent event_of(const run::Result& result, const InitialState& initial) {
   const auto& before = initial.subcritical;
   BatchEvent e{.end = result.event.end,
                .reason = result.event.reason,
@@ -89,7 +89,7 @@ BatchEvent event_of(const run::Result& result, const run::InitialState& initial)
 }
 
 /// Where the interface is in contact, inside and at its largest t/p, as the statics would tell.
-void find_contact(const record::StaticState& state, double edge_margin_m, run::InitialState& initial) {
+void find_contact(const record::StaticState& state, double edge_margin_m, InitialState& initial) {
   auto& before = initial.subcritical;
   const auto in_contact = [](double p_Pa) { return p_Pa > 0; };
   const auto first = std::ranges::find_if(state.p_s_Pa, in_contact);
@@ -114,12 +114,12 @@ BatchEvent event_of_history(const input::CaseFile& given, const Values& time_s, 
                             double critical_shear_m) {
   const auto problem = problem::make_problem(given.config());
   const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
-  run::InitialState initial;
+  InitialState initial;
   initial.subcritical.tractions = to_state(x_m, t_s_Pa, p_s_Pa);
   initial.critical_shear_m = critical_shear_m;
   find_contact(initial.subcritical.tractions, problem.loading.edge_margin_m, initial);
   run::Result result;
-  result.speeds = run::wave_speeds(problem.above().material);
+  result.speeds = solid::wave_speeds(problem.above().material);
   const auto options = run::front_options(problem, initial);
   result.event.record = to_record(history, threshold_m_per_s, options.l_star_m);
   result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
@@ -136,7 +136,7 @@ bool is_written(const fs::path& dir) {
   }
 }
 
-void write_run(const fs::path& dir, const run::Result& result, const run::InitialState& initial) {
+void write_run(const fs::path& dir, const run::Result& result, const InitialState& initial) {
   static std::mutex mutex;  // HDF5 need not be built for several threads
   const std::lock_guard lock(mutex);
   results::remove_tree(dir);  // what an interruption has left
@@ -163,7 +163,7 @@ class Batch {
     try {
       batch_.run(
           problems,
-          [&](std::size_t k, const run::Result& result, const run::InitialState& initial, bool was_kept) {
+          [&](std::size_t k, const run::Result& result, const InitialState& initial, bool was_kept) {
             if (folders[k] && !was_kept) write_run(*folders[k], result, initial);
             auto event = event_of(result, initial);
             watcher.in_python([&] { done(k, std::move(event)); });

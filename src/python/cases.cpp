@@ -15,6 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "advice/info.hpp"
+#include "advice/needs.hpp"
+#include "advice/outlook.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "input/schema.hpp"
@@ -26,9 +29,8 @@
 #include "python/observers.hpp"
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
-#include "run/needs.hpp"
-#include "run/outlook.hpp"
 #include "run/session.hpp"
+#include "setup/meshes.hpp"
 #include "solid/operator.hpp"
 #include "stability/rupture.hpp"
 #include "stability/verdict.hpp"
@@ -104,7 +106,7 @@ void run_problem(const input::CaseFile& given, const Problem& problem, const fs:
   session.folder.require_empty(overwrite);
   session.complete([&](const run::SessionHooks& hooks) {
     return given.placing_errors([&] {
-      run::require_fit(problem, session.folder.dir());
+      advice::require_fit(problem, session.folder.dir());
       return run::run_into(session.folder, problem, session.options, hooks);
     });
   });
@@ -227,10 +229,10 @@ double stable_step_s(const input::CaseFile& given, double element_size_m) {
 }
 
 void bind_speeds(nb::module_& module) {
-  nb::class_<run::WaveSpeeds>(module, "WaveSpeeds", "Wave speeds of a material.")
-      .def_ro("c_L_m_per_s", &run::WaveSpeeds::c_L, "longitudinal, in the plane chosen")
-      .def_ro("c_S_m_per_s", &run::WaveSpeeds::c_S, "shear")
-      .def_ro("c_R_m_per_s", &run::WaveSpeeds::c_R, "Rayleigh, on a free surface");
+  nb::class_<solid::WaveSpeeds>(module, "WaveSpeeds", "Wave speeds of a material.")
+      .def_ro("c_L_m_per_s", &solid::WaveSpeeds::c_L, "longitudinal, in the plane chosen")
+      .def_ro("c_S_m_per_s", &solid::WaveSpeeds::c_S, "shear")
+      .def_ro("c_R_m_per_s", &solid::WaveSpeeds::c_R, "Rayleigh, on a free surface");
 }
 
 void bind_verdict(nb::module_& module) {
@@ -255,7 +257,7 @@ void bind_verdict(nb::module_& module) {
 
 /// What run.json has under `rupture`, by the same names.
 void bind_rupture(nb::module_& module) {
-  using R = run::RuptureOutlook;
+  using R = advice::RuptureOutlook;
   using S = stability::Spread;
   nb::class_<S>(module, "NodeSpread", "Over the nodes; NaN where there are none.")
       .def_ro("min", &S::least)
@@ -296,9 +298,9 @@ void bind_rupture(nb::module_& module) {
 }
 
 void bind_info(nb::module_& module) {
-  using I = run::Info;
-  using L = run::ResolvedLoads;
-  using M = run::MeshChoice;
+  using I = advice::Info;
+  using L = setup::ResolvedLoads;
+  using M = advice::MeshChoice;
   nb::class_<M>(module, "MeshChoice", "A mesh for a case's process zone.")
       .def_ro("element_size_m", &M::element_size_m)
       .def_ro("coarsenings", &M::coarsenings, "of the plate, and of a base")
@@ -365,13 +367,13 @@ void bind_cases(nb::module_& module) {
           "toml", [](const C& c) { return problem::source_of(c.config()).case_text; },
           "every key with its value, as case.resolved.toml has it")
       .def_prop_ro(
-          "wave_speeds", [](const C& c) { return run::wave_speeds(c.config().material); }, "of the plate")
+          "wave_speeds", [](const C& c) { return solid::wave_speeds(c.config().material); }, "of the plate")
       .def_prop_ro("static_coefficient",
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
       .def(
           "info",
           [](const C& c) {
-            return c.placing_errors([&] { return run::info(problem::make_problem(c.config())); });
+            return c.placing_errors([&] { return advice::info(problem::make_problem(c.config())); });
           },
           nb::call_guard<nb::gil_scoped_release>(),
           "What follows from the case; only loads that are forces take its statics.")
@@ -387,7 +389,13 @@ void bind_cases(nb::module_& module) {
            "folder is a part.")
       .def(
           "check",
-          [](const C& c) { c.placing_errors([&] { return run::check(problem::make_problem(c.config())); }); },
+          [](const C& c) {
+            c.placing_errors([&] {
+              const auto problem = problem::make_problem(c.config());
+              advice::require_memory_fits(problem);
+              setup::check(problem);
+            });
+          },
           "What can be checked without solving anything: memory, geometry; raises CaseError.");
   module.def(
       "run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "evolve"_a.none(), "initial"_a.none(),

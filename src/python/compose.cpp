@@ -24,7 +24,7 @@
 #include "python/bindings.hpp"
 #include "python/laws.hpp"
 #include "python/watcher.hpp"
-#include "run/loads.hpp"
+#include "setup/loads.hpp"
 #include "statics/prestress.hpp"
 #include "statics/statics.hpp"
 
@@ -171,7 +171,8 @@ class Stepper {
                                      interface::static_coefficient_key(problem.friction.law),
                                      [&] { return !watcher.is_stopped(); });
       if (share) return statics.shear_to(*share);
-      return run::common_state(problem, statics, statics.shear_to(1), mesh::tributary_lengths_m(above_.mesh));
+      return setup::common_state(problem, statics, statics.shear_to(1),
+                                 mesh::tributary_lengths_m(above_.mesh));
     }();
     begin(equilibrium, problem.shear_speed_m_per_s, {});
   }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/fracture.hpp"
-
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -10,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "advice/prediction.hpp"
 #include "fracture/prediction.hpp"
 #include "input/schema.hpp"
 #include "python/arrays.hpp"
@@ -23,8 +22,8 @@ using namespace nb::literals;
 nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const Values& fracture_energy,
                         const Values& residual_coefficient, const std::optional<double>& at_x_m,
                         const std::optional<std::tuple<Values, Values, Values>>& before) {
-  const run::TipFriction friction{to_vector(x_m), to_vector(fracture_energy),
-                                  to_vector(residual_coefficient)};
+  const advice::TipFriction friction{to_vector(x_m), to_vector(fracture_energy),
+                                     to_vector(residual_coefficient)};
   const auto problem = problem::make_problem(given.config());
   std::optional<record::StaticState> state;
   if (before) {
@@ -34,7 +33,7 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   const auto p = [&] {
     const nb::gil_scoped_release unlocked;
     return given.placing_errors(
-        [&] { return run::FrontPredictor(problem).predict(friction, at_x_m, state ? &*state : nullptr); });
+        [&] { return advice::FrontPredictor(problem).predict(friction, at_x_m, state ? &*state : nullptr); });
   }();
   const auto& of = p.of_fronts;
   nb::dict points;
@@ -59,7 +58,7 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   found["nucleation_length_m"] = p.nucleation_length_m;
   found["bodies"] = p.bodies;
   found["notes"] = p.notes;
-  found["law_has_length"] = run::has_fracture_energy(problem);
+  found["law_has_length"] = advice::has_fracture_energy(problem);
   found["doubts_of_arrest"] = p.doubts_of_arrest;
   return found;
 }

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "advice/needs.hpp"
 #include "base/error.hpp"
+#include "setup/initial_state.hpp"
 
 namespace slipfront::run {
 
@@ -92,7 +94,8 @@ void Batch::compute_initial_states(std::span<const Problem* const> cases) {
   }
   in_parallel(threads_, missing.size(), [&](std::size_t k) {
     try {
-      states_.at(missing[k].first) = make_initial_state(*missing[k].second, monitor());
+      advice::require_memory_fits(*missing[k].second);
+      states_.at(missing[k].first) = setup::make_initial_state(*missing[k].second, monitor());
     } catch (const Interrupted&) {
       throw Interrupted(interruption_);
     }

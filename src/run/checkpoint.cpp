@@ -13,7 +13,6 @@
 #include "base/error.hpp"
 #include "base/state.hpp"
 #include "base/version.hpp"
-#include "run/begin.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -21,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Begins every checkpoint. The number goes up when what follows changes.
-const std::string magic = "slipfront checkpoint 11";
+const std::string magic = "slipfront checkpoint 12";
 
 constexpr std::size_t n_kept = 2;
 constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";
@@ -71,7 +70,7 @@ const std::string& program_identity() {
 InitialState read_initial_state(results::InputArchive& archive, const Problem& problem,
                                 const Processes& processes) {
   InitialState initial;
-  auto meshes = check(problem, processes);
+  auto meshes = setup::check(problem, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   archive(initial);
@@ -89,14 +88,13 @@ InitialState read_initial_state(results::InputArchive& archive, const Problem& p
   require_possible(initial.healed.size() == (problem.heals() ? x_m.size() : 0) &&
                        std::ranges::all_of(initial.healed, [](double gain) { return gain >= 0; }),
                    "strengths");
-  require_possible(initial.n_nodes == count(n_nodes_of) && initial.n_cells == count(n_cells_of) &&
-                       initial.tributary_m == mesh::tributary_lengths_m(initial.mesh) &&
-                       initial.mu_s == ratios_at_rest(problem, initial.mesh, initial.healed),
+  require_possible(initial.n_nodes == count(setup::n_nodes_of) &&
+                       initial.n_cells == count(setup::n_cells_of) &&
+                       initial.tributary_m == mesh::tributary_lengths_m(initial.mesh),
                    "a plate");
-  require_possible(is_possible(initial) && initial.prescribed == problem.is_prestressed() &&
-                       initial.ramp.has_value() == by_ramp &&
-                       initial.solver <= statics::StaticSolver::iterative &&
-                       (initial.prescribed || std::isfinite(initial.critical_shear_m)),
+  require_possible(is_possible(initial) && initial.ramp.has_value() == by_ramp &&
+                       initial.cost.solver <= statics::StaticSolver::iterative &&
+                       (problem.is_prestressed() || std::isfinite(initial.critical_shear_m)),
                    "an initial state");
   require_possible(
       initial.law_states.empty() || initial.law_states.size() == problem.friction.law.states().size(),

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "advice/outlook.hpp"
 #include "base/error.hpp"
 #include "base/state.hpp"
 #include "problem/source.hpp"
 #include "run/checkpoint.hpp"
 #include "run/fields.hpp"
+#include "setup/event.hpp"
+#include "setup/event_loads.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -39,7 +42,7 @@ EventPhase::EventPhase(const Problem& problem, Processes& processes, const motio
 
 void EventPhase::begin(InitialState initial) {
   initial_ = std::move(initial);
-  stepper_ = start_event(problem_, initial_, execution_, processes_);
+  stepper_ = setup::start_event(problem_, initial_, execution_, processes_);
   at_root([&] { stream_.emplace(root_->dir, run_files(problem_, initial_, stepper_->step_s())); });
   emplace_run();
   begin_steps();
@@ -52,8 +55,8 @@ void EventPhase::restore(results::InputArchive* kept) {
     require_possible(wall_before_s_ >= 0 && std::isfinite(wall_before_s_), "a time");
     initial_ = read_initial_state(*kept, problem_, processes_);
   });
-  const auto loads = from_root(processes_, [&] { return loads_of_event(problem_, initial_); });
-  stepper_ = make_stepper(problem_, initial_, execution_, processes_);
+  const auto loads = setup::event_loads(problem_, initial_, processes_);
+  stepper_ = setup::make_stepper(problem_, initial_, execution_, processes_);
   read_from(kept, [&] { read_motion(kept, *stepper_, loads); });
   with_file([&] {
     results::ResultStream::Extents extents;
@@ -74,7 +77,7 @@ void EventPhase::restore(results::InputArchive* kept) {
 }
 
 void EventPhase::emplace_run() {
-  run_.emplace(begin_event(
+  run_.emplace(setup::begin_event(
       problem_, initial_, *stepper_,
       [this](std::int64_t step, std::int64_t total) { return look(step, total); },
       is_root() ? static_cast<motion::EventOutput*>(&*stream_) : &no_output,
@@ -83,7 +86,7 @@ void EventPhase::emplace_run() {
 
 void EventPhase::begin_steps() {
   at_root([&] {
-    rupture_ = rupture_outlook(problem_, initial_.subcritical, initial_.tributary_m, initial_.healed);
+    rupture_ = advice::rupture_outlook(problem_, initial_.subcritical, initial_.tributary_m, initial_.healed);
     write_static(root_->dir, problem_, initial_);
   });
   began_ = Clock::now();

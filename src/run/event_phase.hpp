@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "advice/outlook.hpp"
 #include "base/clock.hpp"
 #include "motion/event.hpp"
 #include "results/archive.hpp"
@@ -82,7 +83,7 @@ class EventPhase {
   double wall_before_s_ = 0, report_interval_s_ = 0;
 
   InitialState initial_;
-  RuptureOutlook rupture_;  ///< of it
+  advice::RuptureOutlook rupture_;  ///< of it
   std::unique_ptr<motion::TimeStepper> stepper_;
   std::optional<motion::EventRun> run_;
   std::optional<results::ResultStream> stream_;

@@ -14,7 +14,8 @@
 #include "files/files.hpp"
 #include "results/stream.hpp"
 #include "run/run.hpp"
-#include "run/snapshot_mesh.hpp"
+#include "setup/meshes.hpp"
+#include "setup/snapshot_mesh.hpp"
 
 namespace slipfront::run {
 
@@ -61,9 +62,9 @@ bool answers_sign(const Order& order, int rank) {
   return true;
 }
 
-void write(const Order& order, const Problem& problem, const std::function<SnapshotMesh()>& make_mesh,
+void write(const Order& order, const Problem& problem, const std::function<setup::SnapshotMesh()>& make_mesh,
            results::Writer writer) {
-  std::optional<SnapshotMesh> mesh;
+  std::optional<setup::SnapshotMesh> mesh;
   writer.together([&] { mesh = make_mesh(); });
   writer.count = std::min(writer.count, static_cast<int>(mesh->slabs.n_slabs));
   results::finish_snapshots(order.file, mesh->slabs, snapshot_contents(problem, *mesh), writer);
@@ -101,7 +102,7 @@ void write_fields(const std::filesystem::path& dir, const std::filesystem::path&
   if (order.file.empty()) return;
   if (is_in_rows && are_several && all_see(order, processes)) {
     try {
-      return write(order, problem, [&] { return snapshot_mesh_in_rows(problem, processes.size()); },
+      return write(order, problem, [&] { return setup::snapshot_mesh_in_rows(problem, processes.size()); },
                    {processes.rank(), processes.size(), [&](const auto& work) { processes.together(work); }});
     } catch (const ProcessError& error) {
       throw WriteError("{}", error.what());
@@ -112,7 +113,8 @@ void write_fields(const std::filesystem::path& dir, const std::filesystem::path&
       note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",
                        results::snapshot_file, dir.string()));
     const auto make_mesh = [&] {
-      return is_in_rows ? snapshot_mesh_in_rows(problem) : whole_snapshot_mesh(check(problem, processes));
+      return is_in_rows ? setup::snapshot_mesh_in_rows(problem)
+                        : setup::whole_snapshot_mesh(setup::check(problem, processes));
     };
     write(order, problem, make_mesh, {});
   });

@@ -38,7 +38,7 @@ bool FinishedRuns::take(const Problem& problem, Result& result, InitialState& in
     return false;
   }
   result.problem = problem;
-  result.speeds = wave_speeds(problem.above().material);
+  result.speeds = solid::wave_speeds(problem.above().material);
   analyse(result, initial);
   return true;
 }

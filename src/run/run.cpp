@@ -6,28 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "advice/notes.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "base/per_node.hpp"
-#include "motion/distributed_stepper.hpp"
-#include "motion/stepper.hpp"
-#include "motion/trigger_zone.hpp"
 #include "problem/contact.hpp"
-#include "run/begin.hpp"
-#include "run/notes.hpp"
-#include "run/snapshot_plan.hpp"
+#include "setup/event.hpp"
+#include "setup/event_loads.hpp"
+#include "setup/snapshot_plan.hpp"
 
 namespace slipfront::run {
 
 namespace {
-
-/// With which the event begins. @tparam Initial  InitialState
-template <class Initial>
-auto& event_state(const Problem& problem, Initial& initial) {
-  return problem.start.kind == interface::EventKind::spontaneous ? initial.supercritical
-                                                                 : initial.subcritical;
-}
 
 /// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
 std::string contact_warning(const statics::Equilibrium& state) {
@@ -51,15 +41,6 @@ std::string ramp_warning(const std::optional<motion::Ramp>& ramp) {
   return "the ramp brings t/p from below (1 - loading.critical_margin) mu_s to slip within a step: the state "
          "in which triggered events begin is the critical one; choose a lower loading.shear_speed_m_per_s";
 }
-
-}  // namespace
-
-WaveSpeeds wave_speeds(const solid::Material& m) {
-  return {solid::longitudinal_speed_m_per_s(m), solid::shear_speed_m_per_s(m),
-          solid::rayleigh_speed_m_per_s(m)};
-}
-
-namespace {
 
 /// A number of the law of each node, or of the one of all.
 template <class Of>
@@ -87,7 +68,7 @@ fronts::FrontOptions front_options(const Problem& problem, const InitialState& i
   o.elasticity = {problem.above().material.youngs_modulus_Pa, problem.above().material.poissons_ratio,
                   problem.above().material.plane == solid::Plane::strain};
   const double margin = problem.start.trigger.zone_m + problem.fronts.trigger_margin_m;
-  const double edge = initial.prescribed ? 0 : problem.loading.edge_margin_m;
+  const double edge = problem.is_prestressed() ? 0 : problem.loading.edge_margin_m;
   const double contact_from = initial.subcritical.inside_from_m - edge;
   const double contact_to = initial.subcritical.inside_to_m + edge;
   if (problem.start.kind == interface::EventKind::left) {
@@ -114,99 +95,18 @@ fronts::FrontOptions front_options(const Problem& problem, const InitialState& i
   return o;
 }
 
-namespace {
-
-/// The stepper of one process.
-std::unique_ptr<motion::TimeStepper> whole_stepper(const Problem& problem, const InitialState& initial,
-                                                   const motion::Execution& execution) {
-  auto stepper = new_time_stepper(problem, initial, execution);
-  stepper->set_probes(probes_of(problem, initial.mesh, initial.base));
-  return stepper;
-}
-
-std::unique_ptr<motion::TimeStepper> stepper_of(const Problem& problem, InitialState& initial,
-                                                const motion::Execution& execution, Processes& processes) {
-  if (processes.size() == 1) return whole_stepper(problem, initial, execution);
-  return new_distributed_stepper(problem, initial, processes, execution);
-}
-
-/// What only the stepper needed.
-void release_nodes(InitialState& initial) {
-  const auto release = [](mesh::Mesh& mesh) {
-    mesh.x_m = std::vector<double>();
-    mesh.y_m = std::vector<double>();
-    mesh.cells = std::vector<mesh::Cell>();
-  };
-  release(initial.mesh);
-  if (initial.base) release(*initial.base);
-  return_freed_memory();
-}
-
-}  // namespace
-
-motion::Loads loads_of_event(const Problem& problem, const InitialState& initial) {
-  auto loads = starting_loads(problem, event_state(problem, initial), initial.mesh, initial.mu_s);
-  loads.law_states = initial.law_states;
-  return loads;
-}
-
-std::unique_ptr<motion::TimeStepper> start_event(const Problem& problem, InitialState& initial,
-                                                 const motion::Execution& execution, Processes& processes) {
-  auto& state = event_state(problem, initial);
-  initial.release_displacements(&state);
-  const auto loads = from_root(processes, [&] { return loads_of_event(problem, initial); });
-  // The other ranks get the state without its displacements, and their columns of these.
-  std::array<solid::Field, 4> u;
-  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
-  auto stepper = stepper_of(problem, initial, execution, processes);
-  for (std::size_t k = 0; k < u.size(); ++k) std::swap(u[k], *state.displacements()[k]);
-  stepper->start(state, shear_speed_in_event_m_per_s(problem), loads);
-  initial.release_displacements();
-  release_nodes(initial);
-  return stepper;
-}
-
-std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, InitialState& initial,
-                                                  const motion::Execution& execution, Processes& processes) {
-  auto stepper = stepper_of(problem, initial, execution, processes);
-  release_nodes(initial);
-  return stepper;
-}
-
-motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
-                             motion::TimeStepper& stepper, const motion::Monitor& monitor,
-                             motion::EventOutput* output, motion::Observers more) {
-  const auto& state = event_state(problem, initial);
-  std::optional<motion::Interval> stop_window;
-  if (problem.is_sequence()) stop_window = {state.inside_from_m, state.inside_to_m};
-  const motion::EventSetup setup = {
-      .state = state,
-      .mu_s = ratios_at_rest(problem, initial.mu_s),
-      .waves = {fastest_speed_m_per_s(problem),
-                stability::radiation_damping_Pa_s_per_m(materials_of(problem))},
-      .loads_settle_s = loads_settle_s(problem),
-      .time = problem.time,
-      .sampling = {problem.output.history_interval_s, problem.output.energy_interval_s,
-                   snapshot_plan(problem, stepper.step_s()).times_s, problem.probe_interval_s,
-                   prescribed_stress(problem)},
-      .halo = motion::halo_for(initial.mesh, problem.fronts.l_star_m),
-      .stop_window = stop_window,
-      .slow_m_per_s = problem.is_slow() ? slow_slip_rate_m_per_s(problem) : infinity};
-  return {stepper, setup, monitor, output, std::move(more)};
-}
-
 Result run_from(const Problem& problem, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution, motion::Observers more) {
-  const auto stepper = whole_stepper(problem, initial, execution);
-  stepper->start(event_state(problem, initial), shear_speed_in_event_m_per_s(problem),
-                 loads_of_event(problem, initial));
+  const auto stepper = setup::whole_stepper(problem, initial, execution);
+  stepper->start(initial.before(problem.start.kind), shear_speed_in_event_m_per_s(problem),
+                 setup::event_loads(problem, initial));
   return run_from(problem, initial, *stepper, monitor, nullptr, std::move(more));
 }
 
 Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& stepper,
                 const motion::Monitor& monitor, motion::EventOutput* output, motion::Observers more) {
   const auto start = Clock::now();
-  auto event = begin_event(problem, initial, stepper, monitor, output, std::move(more));
+  auto event = setup::begin_event(problem, initial, stepper, monitor, output, std::move(more));
   auto result = collect(problem, stepper, event.run());
   result.stepping_wall_s = seconds_since(start);
   analyse(result, initial);
@@ -216,7 +116,7 @@ Result run_from(const Problem& problem, const InitialState& initial, motion::Tim
 Result collect(const Problem& problem, const motion::TimeStepper& stepper, motion::Event event) {
   Result result;
   result.problem = problem;
-  result.speeds = wave_speeds(problem.above().material);
+  result.speeds = solid::wave_speeds(problem.above().material);
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
   result.substep_s = stepper.substep_s();
@@ -253,10 +153,10 @@ std::string end_of_event(const Result& result) {
 
 void analyse(Result& result, const InitialState& initial) {
   analyse(result, initial,
-          rupture_outlook(result.problem, initial.subcritical, initial.tributary_m, initial.healed));
+          advice::rupture_outlook(result.problem, initial.subcritical, initial.tributary_m, initial.healed));
 }
 
-void analyse(Result& result, const InitialState& initial, const RuptureOutlook& outlook) {
+void analyse(Result& result, const InitialState& initial, const advice::RuptureOutlook& outlook) {
   const auto& problem = result.problem;
   const auto options = front_options(problem, initial);
   result.fronts = fronts::find_fronts(result.event.record, initial.subcritical.tractions, options);
@@ -268,13 +168,13 @@ void analyse(Result& result, const InitialState& initial, const RuptureOutlook& 
   auto rupture = outlook;
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
-  result.warnings = notes_of_case(problem, rupture, result.step_s);
+  result.warnings = advice::notes_of_case(problem, rupture, result.step_s);
   if (auto warning = contact_warning(initial.subcritical); !warning.empty())
     result.warnings.push_back(warning);
   if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();
-  if (!initial.prescribed && before.strain > 0 && after.trigger_work > 0.1 * before.strain)
+  if (!problem.is_prestressed() && before.strain > 0 && after.trigger_work > 0.1 * before.strain)
     result.warnings.push_back(
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, "
                     "and drives the motion behind the front",
@@ -293,7 +193,7 @@ void analyse(Result& result, const InitialState& initial, const RuptureOutlook& 
           "small against what rounding takes from it; choose double",
           imbalance / largest));
   }
-  const auto n_after = snapshots_after(problem, result.event.time_s).size();
+  const auto n_after = setup::snapshots_after(problem, result.event.time_s).size();
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const bool quiet = result.event.end == motion::EventEnd::quiet;
   const bool ended_early = result.event.end != motion::EventEnd::end_time;

@@ -8,21 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "advice/outlook.hpp"
 #include "fracture/passage.hpp"
 #include "fronts/front.hpp"
-#include "mesh/mesh.hpp"
+#include "motion/distributed_stepper.hpp"
 #include "motion/event.hpp"
 #include "problem/problem.hpp"
 #include "record/sequence.hpp"
 #include "results/contents.hpp"
-#include "run/initial_state.hpp"
-#include "run/mesh_choice.hpp"
-#include "run/needs.hpp"
-#include "run/outlook.hpp"
-#include "run/snapshot_mesh.hpp"
-#include "run/subdomains.hpp"
-#include "stability/verdict.hpp"
-#include "statics/statics.hpp"
+#include "setup/initial_state.hpp"
+#include "setup/snapshot_mesh.hpp"
+#include "solid/material.hpp"
 
 namespace slipfront::results {
 struct RunFiles;
@@ -30,12 +26,6 @@ struct Table;
 }  // namespace slipfront::results
 
 namespace slipfront::run {
-
-/// Wave speeds in the plane chosen, m/s.
-struct WaveSpeeds {
-  double c_L = 0, c_S = 0, c_R = 0;
-};
-WaveSpeeds wave_speeds(const solid::Material& material);
 
 /// What several ranks have spent on an event, since they began or went on with it.
 struct SharedCost {
@@ -46,14 +36,14 @@ struct SharedCost {
 /// A run with all it found.
 struct Result {
   Problem problem;
-  WaveSpeeds speeds;  ///< of the plate
+  solid::WaveSpeeds speeds;  ///< of the plate
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   double node_updates_per_step = 0;
   double stepping_wall_s = 0;
   motion::Event event;
   std::vector<fronts::Front> fronts;
   std::vector<std::vector<fracture::Passage>> passages;  ///< of each front, at its points
-  RuptureOutlook rupture;
+  advice::RuptureOutlook rupture;
   std::vector<std::string> warnings;
   std::optional<SharedCost> shared;  ///< of several ranks
 
@@ -70,31 +60,11 @@ struct FinishedEvent {
   InitialState initial;
 };
 
-/// With which a case's event begins.
-motion::Loads loads_of_event(const Problem& problem, const InitialState& initial);
-
-/// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
-/// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
-/// @param processes  the ranks that share it
-std::unique_ptr<motion::TimeStepper> start_event(const Problem& problem, InitialState& initial,
-                                                 const motion::Execution& execution = {},
-                                                 Processes& processes = one_process());
-
-/// Stepper of the same plate without its motion, which is to be read from where it was kept.
-std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, InitialState& initial,
-                                                  const motion::Execution& execution = {},
-                                                  Processes& processes = one_process());
-
-/// The event of a case, about to begin with a started stepper; see motion::EventRun.
-motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
-                             motion::TimeStepper& stepper, const motion::Monitor& monitor,
-                             motion::EventOutput* output = nullptr, motion::Observers more = {});
-
 /// The case, the steps and an event, without fronts yet. Collective.
 Result collect(const Problem& problem, const motion::TimeStepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
 /// @param outlook  of its initial state
-void analyse(Result& result, const InitialState& initial, const RuptureOutlook& outlook);
+void analyse(Result& result, const InitialState& initial, const advice::RuptureOutlook& outlook);
 void analyse(Result& result, const InitialState& initial);
 
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
@@ -138,7 +108,7 @@ results::RunFiles run_files(const Problem& problem, const InitialState& initial,
 /// What a history of its interface holds.
 results::Table history_table(const Problem& problem, const std::vector<double>& x_m);
 /// What a case's fields.vtkhdf holds besides.
-results::SnapshotContents snapshot_contents(const Problem& problem, const SnapshotMesh& mesh);
+results::SnapshotContents snapshot_contents(const Problem& problem, const setup::SnapshotMesh& mesh);
 
 /// static.csv: tractions of the common state and, where they vary, the parameters of friction.
 void write_static(const std::filesystem::path& dir, const Problem& problem, const InitialState& initial);
@@ -160,47 +130,5 @@ void write_sequence(const std::filesystem::path& dir, const Problem& problem,
                     std::span<const record::SequenceEvent> events,
                     std::span<const record::LoadingRow> loading, const std::string& end,
                     const Status& status);
-
-/// Derived quantities of a case, found without solving anything but the statics of loads given as forces.
-struct Info {
-  /// A division among ranks, and what a run by them takes.
-  struct Shared {
-    motion::Partition partition;
-    double bytes_per_step = 0;     ///< that the rank with most neighbours sends in exchanges
-    double expected_s = 0;         ///< as if messages took no time
-    double efficiency = 0;         ///< share of the event's time that goes into own columns
-    double root_memory_bytes = 0;  ///< of rank 0
-    double memory_bytes = 0;       ///< of each other one
-  };
-
-  WaveSpeeds speeds;                                         ///< of the plate
-  std::optional<WaveSpeeds> base_speeds;                     ///< of the body below
-  std::optional<double> generalised_rayleigh_speed_m_per_s;  ///< of the two, where it exists
-  std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0;
-  std::optional<std::int64_t> n_irregular;  ///< none where not all of the bodies was made
-  double stable_step_s = 0, step_s = 0, substep_s = 0;
-  std::vector<int> substeps_of_bodies;  ///< in a step of each, the plate first
-  Needs needs;
-  std::int64_t n_steps = 0;                                         ///< of the event, to time.end_s
-  double node_updates = 0;                                          ///< of the event and of the ramp
-  double memory_bytes = 0;                                          ///< the largest of statics and event
-  statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
-  double solver_bytes = 0;                                          ///< of the statics, estimated
-  double expected_s = 0;          ///< at the kernel rate measured on the spot, statics estimated
-  double node_updates_per_s = 0;  ///< measured on the spot
-  RuptureOutlook rupture;
-  std::optional<MeshChoice> cheapest_mesh;
-  stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure; see its has_verdict
-  /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
-  double well_posedness_x_m = nan;
-  std::optional<Shared> shared;
-  std::optional<ResolvedLoads> loads;  ///< see loaded_state
-  std::vector<std::string> notes;      ///< see notes_of_case
-};
-
-/// What a run takes. Of a case that root_has_interface_only only columns of one rank are made.
-/// @param n_processes  ranks that are to share the run, each with a processor
-/// @throws UserError where the plate cannot be divided among so many
-Info info(const Problem& problem, const std::optional<int>& n_processes = {});
 
 }  // namespace slipfront::run

@@ -11,7 +11,8 @@
 #include "boundary/boundary.hpp"
 #include "fronts/fit.hpp"
 #include "problem/contact.hpp"
-#include "run/begin.hpp"
+#include "setup/event_loads.hpp"
+#include "stability/verdict.hpp"
 
 namespace slipfront::run {
 
@@ -65,19 +66,19 @@ void add_event_works(const record::Energies& of_event, record::Energies& sum) {
 Sequence::Sequence(const Problem& problem, const motion::Monitor& monitor, const Processes& processes)
     : problem_(problem),
       path_(problem.path()),
-      initial_(unloaded_state(problem, processes)),
-      statics_(statics_of(problem_, initial_, [monitor] { return monitor(0, 0); })),
+      initial_(setup::unloaded_state(problem, processes)),
+      statics_(setup::statics_of(problem_, initial_, [monitor] { return monitor(0, 0); })),
       plate_(
           solid::make_operator(initial_.mesh, problem.above().material,
                                boundary::make_boundary(initial_.mesh, problem.above().machine).edge_sets())),
       monitor_(monitor) {
   if (initial_.base) base_ = solid::make_operator(*initial_.base, problem.below().material);
-  describe_solver(problem, statics_, initial_);
+  setup::describe_solver(problem, statics_, initial_);
   at_rest_ = statics_.tilted();
   if (problem.heals()) rest_.rests_since_s.assign(initial_.tributary_m.size(), 0);
   if (problem.friction.law.never_sticks())
     begin_slow_slip();
-  else if (has_fracture_energy(problem))
+  else if (advice::has_fracture_energy(problem))
     predictor_.emplace(problem);
   loading_.push_back(row(LoadingPhase::tilted, 0, 0, at_rest_.tractions));
   add_state(at_rest_, loading_.back());
@@ -183,7 +184,7 @@ void Sequence::begin_slow_slip() {
 const InitialState* Sequence::next(const SlowRows& slow_rows) {
   const auto start = Clock::now();
   if (!(slow_ ? slip_to_next(slow_rows) : stick_to_next())) return nullptr;
-  initial_.wall_s = seconds_since(start);
+  initial_.cost.wall_s = seconds_since(start);
   u_begins_x_m_ = relative(initial_, initial_.supercritical).x_m;
   return &initial_;
 }
@@ -194,8 +195,9 @@ void Sequence::heal_until(double time_s) {
   for (const double since_s : rest_.rests_since_s)
     initial_.healed.push_back(sequence.healing_per_e_fold *
                               std::log1p((time_s - since_s) / sequence.healing_time_s));
-  initial_.mu_s = ratios_at_rest(problem_, initial_.mesh, initial_.healed);
-  statics_.set_mu_s(initial_.mu_s, "sequence.healing_per_e_fold");
+  const auto x_m = mesh::interface_x_m(initial_.mesh);
+  statics_.set_mu_s(setup::strength_over_pressure(problem_, x_m, initial_.healed).at_all(x_m.size()),
+                    "sequence.healing_per_e_fold");
 }
 
 void Sequence::heal_to_critical() {
@@ -239,8 +241,9 @@ bool Sequence::stick_to_next() {
   load_to(LoadingPhase::event_begins, initial_.supercritical);
   for (auto* state : {&critical, &initial_.subcritical, &initial_.supercritical})
     state->shear_m += rest_.moved_m;
-  if (has_forces(problem_))
-    initial_.loads = resolved_loads(problem_, statics_, critical, initial_.subcritical, initial_.tributary_m);
+  if (setup::has_forces(problem_))
+    initial_.loads =
+        setup::resolved_loads(problem_, statics_, critical, initial_.subcritical, initial_.tributary_m);
   return true;
 }
 
@@ -325,9 +328,9 @@ bool Sequence::slip_to_next(const SlowRows& slow_rows) {
   initial_.subcritical = initial_.supercritical;
   initial_.critical_shear_m = initial_.subcritical.shear_m;
   initial_.law_states = state.law_states;
-  if (has_forces(problem_))
-    initial_.loads =
-        resolved_loads(problem_, statics_, initial_.subcritical, initial_.subcritical, initial_.tributary_m);
+  if (setup::has_forces(problem_))
+    initial_.loads = setup::resolved_loads(problem_, statics_, initial_.subcritical, initial_.subcritical,
+                                           initial_.tributary_m);
   return true;
 }
 
@@ -477,7 +480,6 @@ void Sequence::resume_event(const InitialState& initial) {
   for (auto member : {&InitialState::subcritical, &InitialState::supercritical})
     initial_.*member = initial.*member;
   initial_.critical_shear_m = initial.critical_shear_m;
-  initial_.mu_s = initial.mu_s;
   initial_.healed = initial.healed;
   initial_.law_states = initial.law_states;
   initial_.loads = initial.loads;

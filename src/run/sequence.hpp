@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "advice/prediction.hpp"
 #include "motion/quasi_dynamic.hpp"
 #include "record/sequence.hpp"
 #include "run/creep.hpp"
-#include "run/fracture.hpp"
-#include "run/initial_state.hpp"
 #include "run/run.hpp"
+#include "setup/initial_state.hpp"
 #include "solid/operator.hpp"
 
 namespace slipfront::run {
@@ -116,7 +116,7 @@ class Sequence {
   statics::Statics statics_;
   solid::Operator plate_;
   std::optional<solid::Operator> base_;
-  std::optional<FrontPredictor> predictor_;  ///< of laws with a fracture energy
+  std::optional<advice::FrontPredictor> predictor_;  ///< of laws with a fracture energy
   motion::Monitor monitor_;
   std::unique_ptr<motion::QuasiDynamicSlip> slow_;  ///< of a law that never sticks
   std::optional<Creep> creep_;                      ///< slow slip under way

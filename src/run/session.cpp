@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "advice/needs.hpp"
 #include "base/caller.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
@@ -27,6 +28,7 @@
 #include "run/event_phase.hpp"
 #include "run/sequence.hpp"
 #include "run/shared_states.hpp"
+#include "setup/event.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -203,6 +205,7 @@ Finished Session::keeping_failures(const std::function<Finished()>& work) {
 }
 
 void Session::begin(Checkpoints::Checkpoint* kept) {
+  advice::require_memory_fits(problem_, processes_);
   write_status({"running", "before the event", head_.sessions});
   if (problem_.is_sequence())
     sequence_.emplace(
@@ -296,7 +299,7 @@ InitialState Session::first_state(Checkpoints::Checkpoint* kept) {
   if (options_.shared_states) shared.emplace(*options_.shared_states);
   if (shared)
     if (auto taken = shared->take(problem_, hooks_.note)) return std::move(*taken);
-  auto initial = make_initial_state(
+  auto initial = setup::make_initial_state(
       problem_,
       [&](std::int64_t step, std::int64_t total) {
         if (ramp_ == nullptr) return look_at_statics();
@@ -516,7 +519,7 @@ bool has_all(const std::filesystem::path& dir) {
 int suitable_threads(const Problem& problem) {
   constexpr double nodes_per_thread = 20'000;
   constexpr unsigned max_threads = 4;
-  const double useful = mesh_size(problem).n_nodes / nodes_per_thread;
+  const double useful = advice::mesh_size(problem).n_nodes / nodes_per_thread;
   const double most = std::clamp(std::thread::hardware_concurrency(), 1U, max_threads);
   return static_cast<int>(std::clamp(useful, 1.0, most));
 }
@@ -569,6 +572,14 @@ bool is_done(const results::ResultFolder& folder, const Problem* expected) {
   if (is_continuation(*expected, done) && expected->source.case_text != done.source.case_text) return false;
   require_same_case(expected->source, done.source);
   return true;
+}
+
+void require_same_program(Processes& processes) {
+  processes.gather(packed(program_identity()), [&](int rank, MessageBuffer& buffer) {
+    if (const auto program = unpacked<std::string>(buffer); program != program_identity())
+      throw UserError("slipfront: rank {} is {}, and rank 0 {}; start the same program everywhere", rank,
+                      program, program_identity());
+  });
 }
 
 void serve_ranks(Processes& processes) {

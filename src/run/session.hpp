@@ -83,6 +83,8 @@ Finished resume(results::ResultFolder& folder, const Problem* expected, const Se
 /// @throws UserError where it is another one
 bool is_done(const results::ResultFolder& folder, const Problem* expected);
 
+/// Collective. @throws on rank 0 UserError where another rank is another program
+void require_same_program(Processes& processes);
 /// On the ranks but 0: their parts of the events that rank 0 begins or goes on with, until it releases them.
 void serve_ranks(Processes& processes);
 void stop_ranks(Processes& processes);

@@ -45,9 +45,9 @@ std::optional<InitialState> SharedStates::take(const Problem& problem,
     if (key != wanted) throw UserError("{}: is the state of another case", file.string());
     auto initial = read_initial_state(archive, problem);
     archive.close();
-    require_possible(
-        initial.prescribed || (initial.subcritical.u_m.size() > 0 && initial.supercritical.u_m.size() > 0),
-        "displacements");
+    require_possible(problem.is_prestressed() ||
+                         (initial.subcritical.u_m.size() > 0 && initial.supercritical.u_m.size() > 0),
+                     "displacements");
     return initial;
   } catch (const UserError& error) {
     note(fmt::format("{}; the state before the event is solved again", error.what()));

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "files/files.hpp"
-#include "run/initial_state.hpp"
+#include "setup/initial_state.hpp"
 
 namespace slipfront::run {
 

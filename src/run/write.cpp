@@ -16,8 +16,8 @@
 #include "results/results.hpp"
 #include "results/stream.hpp"
 #include "run/run.hpp"
-#include "run/snapshot_mesh.hpp"
-#include "run/snapshot_plan.hpp"
+#include "setup/snapshot_mesh.hpp"
+#include "setup/snapshot_plan.hpp"
 
 namespace slipfront::run {
 
@@ -61,7 +61,7 @@ Json friction_work_json(const Result& result, const InitialState& initial) {
           {"residual_J_per_m", weakens ? all - breakdown : all}};
 }
 
-Json loads_json(const ResolvedLoads& loads) {
+Json loads_json(const setup::ResolvedLoads& loads) {
   return {{"normal_force_N_per_m", loads.normal_force_N_per_m},
           {"mean_pressure_Pa", loads.mean_pressure_Pa},
           {"tilt_left_m", loads.tilt_left_m},
@@ -72,8 +72,8 @@ Json loads_json(const ResolvedLoads& loads) {
           {"critical_shear_m", loads.critical_shear_m}};
 }
 
-Json statics_json(const InitialState& initial) {
-  if (initial.prescribed)
+Json statics_json(const Problem& problem, const InitialState& initial) {
+  if (problem.is_prestressed())
     return {{"common_peak_t_over_p", initial.subcritical.peak_ratio},
             {"peak_x_m", initial.subcritical.peak_x_m},
             {"inside_from_m", initial.subcritical.inside_from_m},
@@ -84,10 +84,10 @@ Json statics_json(const InitialState& initial) {
                {"peak_x_m", initial.subcritical.peak_x_m},
                {"inside_from_m", initial.subcritical.inside_from_m},
                {"inside_to_m", initial.subcritical.inside_to_m},
-               {"unknowns", initial.n_unknowns},
-               {"solver", statics::name_of(initial.solver)},
-               {"solver_bytes", std::llround(initial.solver_bytes)},
-               {"wall_s", initial.wall_s}};
+               {"unknowns", initial.cost.n_unknowns},
+               {"solver", statics::name_of(initial.cost.solver)},
+               {"solver_bytes", std::llround(initial.cost.solver_bytes)},
+               {"wall_s", initial.cost.wall_s}};
   if (initial.loads) json["loads"] = loads_json(*initial.loads);
   if (initial.ramp) {
     const auto& ramp = *initial.ramp;
@@ -110,7 +110,7 @@ Json statics_json(const InitialState& initial) {
   return json;
 }
 
-Json speeds_json(const WaveSpeeds& speeds) {
+Json speeds_json(const solid::WaveSpeeds& speeds) {
   return {{"c_L_m_per_s", speeds.c_L}, {"c_S_m_per_s", speeds.c_S}, {"c_R_m_per_s", speeds.c_R}};
 }
 
@@ -138,7 +138,7 @@ Json spread_json(const stability::Spread& spread) {
 }
 
 /// What the tractions before the event let expect; infinite numbers become null.
-Json rupture_json(const RuptureOutlook& rupture) {
+Json rupture_json(const advice::RuptureOutlook& rupture) {
   const auto& o = rupture.of_nodes;
   return {{"nodes_inside", o.n_nodes},
           {"nodes_that_weaken", o.n_weakening},
@@ -226,31 +226,32 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
   const bool ended = status.name != "running";
   json["end"] = ended ? Json(name(event.end)) : Json();
   json["end_reason"] = ended ? Json(end_of_event(result)) : Json();
-  json.update({{"mesh",
-                {{"columns", initial.mesh.grid.columns},
-                 {"rows", initial.mesh.grid.rows},
-                 {"nodes", initial.n_nodes},
-                 {"cells", initial.n_cells}}},
-               {"wave_speeds", speeds_json(result.speeds)},
-               {"stable_dt_s", result.stable_step_s},
-               {"dt_s", result.step_s},
-               {"interface_dt_s", result.substep_s},
-               {"steps", event.steps},
-               {"time_s", event.time_s},
-               {"wall_s", result.stepping_wall_s},
-               {"node_updates_per_s",
-                static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s},
-               {"statics", statics_json(initial)},
-               {"rupture", rupture_json(result.rupture)},
-               {"energy_at_start", energy_json(event.energies.front())},
-               {"energy_at_end", energy_json(event.energies.back())},
-               {"onsets", event.record.n_onsets()},
-               {"snapshot_times_after_the_event_s",
-                status.name == "running" ? Json() : Json(snapshots_after(result.problem, event.time_s))},
-               {"fronts", fronts_json(result.fronts)},
-               {"warnings", warnings}});
+  json.update(
+      {{"mesh",
+        {{"columns", initial.mesh.grid.columns},
+         {"rows", initial.mesh.grid.rows},
+         {"nodes", initial.n_nodes},
+         {"cells", initial.n_cells}}},
+       {"wave_speeds", speeds_json(result.speeds)},
+       {"stable_dt_s", result.stable_step_s},
+       {"dt_s", result.step_s},
+       {"interface_dt_s", result.substep_s},
+       {"steps", event.steps},
+       {"time_s", event.time_s},
+       {"wall_s", result.stepping_wall_s},
+       {"node_updates_per_s",
+        static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s},
+       {"statics", statics_json(result.problem, initial)},
+       {"rupture", rupture_json(result.rupture)},
+       {"energy_at_start", energy_json(event.energies.front())},
+       {"energy_at_end", energy_json(event.energies.back())},
+       {"onsets", event.record.n_onsets()},
+       {"snapshot_times_after_the_event_s",
+        status.name == "running" ? Json() : Json(setup::snapshots_after(result.problem, event.time_s))},
+       {"fronts", fronts_json(result.fronts)},
+       {"warnings", warnings}});
   json["friction_work"] = friction_work_json(result, initial);
-  if (initial.prescribed) json["prestress"] = prestress_json(result.problem);
+  if (result.problem.is_prestressed()) json["prestress"] = prestress_json(result.problem);
   if (result.shared) json["processes"] = processes_json(*result.shared);
   if (const auto& bodies = result.problem; bodies.has_below()) {
     const auto& grid = initial.base->grid;
@@ -258,7 +259,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
     json["mesh"]["base_rows"] = grid.rows;
     json["base"] = {{"columns", grid.columns},
                     {"rows", grid.rows},
-                    {"wave_speeds", speeds_json(wave_speeds(below))},
+                    {"wave_speeds", speeds_json(solid::wave_speeds(below))},
                     {"generalised_rayleigh_speed_m_per_s",
                      optional_json(stability::generalised_rayleigh_speed_m_per_s(above, below))}};
   }
@@ -307,12 +308,13 @@ results::Table history_table(const Problem& problem, const std::vector<double>& 
 
 results::RunFiles run_files(const Problem& problem, const InitialState& initial, double step_s) {
   const auto origin = origin_of(problem);
-  const auto n_snapshots = snapshot_plan(problem, step_s).times_s.size();
+  const auto n_snapshots = setup::snapshot_plan(problem, step_s).times_s.size();
   results::RunFiles files{
       history_table(problem, initial.subcritical.tractions.x_m),
       {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
   if (initial.base) {
-    const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));
+    const auto below =
+        results::seam(*initial.base, static_cast<std::size_t>(setup::n_nodes_of(initial.mesh)));
     files.snapshots.seam.insert(files.snapshots.seam.end(), below.begin(), below.end());
   }
   if (const auto places = problem.probes; !places.empty())
@@ -320,7 +322,7 @@ results::RunFiles run_files(const Problem& problem, const InitialState& initial,
   return files;
 }
 
-results::SnapshotContents snapshot_contents(const Problem& problem, const SnapshotMesh& mesh) {
+results::SnapshotContents snapshot_contents(const Problem& problem, const setup::SnapshotMesh& mesh) {
   results::SnapshotContents contents{{}, origin_of(problem), prescribed_stress(problem)};
   if (!problem.output.snapshot_stress) return contents;
   contents.bodies.push_back({mesh.n_plate_cells, problem.above().material});
@@ -376,7 +378,7 @@ void write_sequence(const std::filesystem::path& dir, const Problem& problem,
   results::write_loading(dir / "loading.csv", loading, numbers);
   auto json = about(problem, status);
   json["end"] = end.empty() ? Json() : Json(end);
-  json["wave_speeds"] = speeds_json(wave_speeds(problem.above().material));
+  json["wave_speeds"] = speeds_json(solid::wave_speeds(problem.above().material));
   json["events"] = events.size();
   if (!loading.empty()) {
     json["largest_friction"] = loads_json(record::strongest(loading));
@@ -407,7 +409,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   for (const auto& snapshot : event.snapshots) stream.snapshot(snapshot);
   stream.finish(numbers_of(status_of(result)));
   if (!event.snapshots.empty()) {
-    const auto mesh = whole_snapshot_mesh({initial.mesh, initial.base});
+    const auto mesh = setup::whole_snapshot_mesh({initial.mesh, initial.base});
     results::finish_snapshots(dir / results::snapshot_file, mesh.slabs,
                               snapshot_contents(result.problem, mesh));
   }

@@ -50,6 +50,10 @@ double rayleigh_speed_m_per_s(const Material& m) {
   return 0.5 * (low + high);
 }
 
+WaveSpeeds wave_speeds(const Material& m) {
+  return {longitudinal_speed_m_per_s(m), shear_speed_m_per_s(m), rayleigh_speed_m_per_s(m)};
+}
+
 std::array<double, 9> elasticity_Pa(const Material& m) {
   const double P = longitudinal_modulus_Pa(m);
   const double G = shear_modulus_Pa(m);

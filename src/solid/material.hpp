@@ -27,6 +27,12 @@ double shear_speed_m_per_s(const Material& material);         ///< c_S
 double shear_admittance_m_per_Pa_s(const Material& material);
 double rayleigh_speed_m_per_s(const Material& material);  ///< c_R, root of the Rayleigh function
 
+/// Wave speeds in the plane chosen, m/s.
+struct WaveSpeeds {
+  double c_L = 0, c_S = 0, c_R = 0;
+};
+WaveSpeeds wave_speeds(const Material& material);
+
 /// Plane elasticity matrix for (e_xx, e_yy, 2 e_xy), row-major, Pa.
 std::array<double, 9> elasticity_Pa(const Material& material);
 

@@ -92,22 +92,23 @@ std::string checkpoint_of(const input::Case& config) {
       ramp = &run;
     };
     try {
-      run::make_initial_state(make_problem(config), keep, {}, begins);
+      setup::make_initial_state(make_problem(config), keep, {}, begins);
     } catch (const Interrupted&) {
     }
   } else {
-    auto initial = run::make_initial_state(make_problem(config), stop);
-    const auto stepper = run::start_event(make_problem(config), initial);
+    auto initial = setup::make_initial_state(make_problem(config), stop);
+    const auto stepper = setup::start_event(make_problem(config), initial);
     head.in_event = true;
     std::optional<motion::EventRun> event;
-    event.emplace(run::begin_event(make_problem(config), initial, *stepper, [&](std::int64_t, std::int64_t) {
-      checkpoints.keep(head, [&](results::OutputArchive& archive) {
-        archive(initial);
-        run::write_motion(archive, *stepper);
-        archive(results::ResultStream::Extents{}, *event);
-      });
-      return false;
-    }));
+    event.emplace(
+        setup::begin_event(make_problem(config), initial, *stepper, [&](std::int64_t, std::int64_t) {
+          checkpoints.keep(head, [&](results::OutputArchive& archive) {
+            archive(initial);
+            run::write_motion(archive, *stepper);
+            archive(results::ResultStream::Extents{}, *event);
+          });
+          return false;
+        }));
     event->run();
   }
   auto content = content_of(scratch.dir() / file_name);
@@ -120,22 +121,22 @@ std::string checkpoint_of(const input::Case& config) {
 void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
   if (kept.head.in_event) {
     auto initial = run::read_initial_state(kept.body, make_problem(config));
-    const auto loads = run::loads_of_event(make_problem(config), initial);
-    const auto stepper = run::make_stepper(make_problem(config), initial);
+    const auto loads = setup::event_loads(make_problem(config), initial);
+    const auto stepper = setup::make_stepper(make_problem(config), initial);
     run::read_motion(&kept.body, *stepper, loads);
-    auto event = run::begin_event(make_problem(config), initial, *stepper, stop);
+    auto event = setup::begin_event(make_problem(config), initial, *stepper, stop);
     results::ResultStream::Extents extents;
     kept.body(extents, event);
     event.require_restored();
     kept.body.close();
     event.run();
   } else {
-    run::make_initial_state(make_problem(config), stop, {},
-                            [&](motion::Stepper& stepper, motion::RampRun& ramp) {
-                              run::read_motion(&kept.body, stepper, {});
-                              kept.body(ramp);
-                              kept.body.close();
-                            });
+    setup::make_initial_state(make_problem(config), stop, {},
+                              [&](motion::Stepper& stepper, motion::RampRun& ramp) {
+                                run::read_motion(&kept.body, stepper, {});
+                                kept.body(ramp);
+                                kept.body.close();
+                              });
   }
 }
 

@@ -10,7 +10,7 @@
 #include "cases.hpp"
 #include "input/schema.hpp"
 #include "reference.hpp"
-#include "run/snapshot_mesh.hpp"
+#include "setup/snapshot_mesh.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::run {
@@ -65,11 +65,11 @@ TEST(Base, SnapshotsHoldBothBodies) {
   auto config = problem_f(2e-3);
   config.time.end_s = 40e-6;
   config.output.snapshot_times_s = {40e-6};
-  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto initial = setup::make_initial_state(make_problem(config), go_on);
   const auto snapshots = run_from(make_problem(config), initial, go_on).event.snapshots;
   ASSERT_EQ(snapshots.size(), 1U);
   mesh::Mesh mesh;
-  whole_snapshot_mesh({initial.mesh, initial.base}).slabs.visit(0, [&](const mesh::Slab& slab) {
+  setup::whole_snapshot_mesh({initial.mesh, initial.base}).slabs.visit(0, [&](const mesh::Slab& slab) {
     mesh = slab.mesh;
   });
   ASSERT_EQ(snapshots.front().u_m.size(), mesh.x_m.size());
@@ -96,8 +96,8 @@ TEST(Base, SnapshotsHoldBothBodies) {
 
 TEST(Base, InfoKnowsBothBodies) {
   const auto config = problem_f(2e-3);
-  const auto info = run::info(make_problem(config));
-  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto info = advice::info(make_problem(config));
+  const auto initial = setup::make_initial_state(make_problem(config), go_on);
   const auto result = run_from(make_problem(config), initial, go_on);
   EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes() + initial.base->n_nodes());
   EXPECT_EQ(info.step_s, result.step_s);
@@ -105,13 +105,13 @@ TEST(Base, InfoKnowsBothBodies) {
   // The base is faster by 1934/1584: not by a whole number, so that both take the same steps.
   EXPECT_THAT(info.substeps_of_bodies, testing::ElementsAre(18, 18));
   EXPECT_NEAR(info.base_speeds->c_S, 1119.43, 0.005);
-  EXPECT_NEAR(estimated_size(make_problem(config)).n_nodes, static_cast<double>(info.n_nodes),
+  EXPECT_NEAR(advice::estimated_size(make_problem(config)).n_nodes, static_cast<double>(info.n_nodes),
               0.01 * static_cast<double>(info.n_nodes));
   // A base with half the speed of the plate takes one step in two of the plate's.
   auto slow = config;
   slow.base.material = config.material;
   slow.base.material.density_kg_per_m3 *= 4;
-  EXPECT_THAT(run::info(make_problem(slow)).substeps_of_bodies, testing::ElementsAre(18, 36));
+  EXPECT_THAT(advice::info(make_problem(slow)).substeps_of_bodies, testing::ElementsAre(18, 36));
 }
 
 TEST(Base, SingleRowsAgreeWithDoubleOnesWhateverTheWaveSpeeds) {
@@ -137,11 +137,11 @@ TEST(Base, ASoftBaseKeepsTheCommonStepShort) {
   auto rigid = config;
   rigid.base.kind = input::BaseKind::rigid;
   const auto result = run_case(config);
-  EXPECT_EQ(result.step_s, 16 * info(make_problem(rigid)).step_s);
+  EXPECT_EQ(result.step_s, 16 * advice::info(make_problem(rigid)).step_s);
   EXPECT_LT(result.event.time_s, config.time.end_s + 1.001 * result.step_s);
   EXPECT_GT(result.event.history.time_s.size(), 8U);
   config.base.material = {.youngs_modulus_Pa = 1e-6, .density_kg_per_m3 = 1e6, .stiffness_damping_s = 0};
-  EXPECT_GT(info(make_problem(config)).n_steps, 8);
+  EXPECT_GT(advice::info(make_problem(config)).n_steps, 8);
 }
 
 TEST(Base, WhatDoesNotFitIsRefused) {

@@ -22,7 +22,7 @@ TEST(FinishedRuns, ServeForTheirCaseAlone) {
   const test::TemporaryFolder folder;
   const FinishedRuns finished(folder / "runs");
   for (const auto& config : cases) {
-    const auto initial = make_initial_state(make_problem(config), test::go_on);
+    const auto initial = setup::make_initial_state(make_problem(config), test::go_on);
     finished.keep(run_from(make_problem(config), initial, test::go_on), initial);
   }
   std::vector<fs::path> files;
@@ -56,7 +56,7 @@ TEST(FinishedRuns, ServeForTheirTableOfFrictionAlone) {
   test::set_table(of_other_table, "x_m,mu_k\n0,0.6\n0.2,0.7\n");
   const test::TemporaryFolder folder;
   const FinishedRuns finished(folder / "runs");
-  const auto initial = make_initial_state(make_problem(config), test::go_on);
+  const auto initial = setup::make_initial_state(make_problem(config), test::go_on);
   finished.keep(run_from(make_problem(config), initial, test::go_on), initial);
   EXPECT_TRUE(finished.has(make_problem(config)));
   EXPECT_FALSE(finished.has(make_problem(of_other_table)));

@@ -83,7 +83,7 @@ TEST(FrictionAlongX, EqualRowsAreTheUniformLawBitByBit) {
 
 TEST(FrictionAlongX, FrontsAreMeasuredByEachNodesStrength) {
   auto c = rupture("x_m,mu_s\n0,0.55\n0.2,0.65\n");
-  const auto initial = make_initial_state(make_problem(c), go_on);
+  const auto initial = setup::make_initial_state(make_problem(c), go_on);
   const auto result = run_from(make_problem(c), initial, go_on);
   const auto elasticity = front_options(make_problem(c), initial).elasticity;
   int n = 0;
@@ -101,7 +101,7 @@ TEST(FrictionAlongX, FrontsAreMeasuredByEachNodesStrength) {
 TEST(FrictionAlongX, StatesBeforeAreSharedByEqualFrictionOnly) {
   auto b = rupture();
   const auto a = rupture("x_m,mu_s\n0,0.6\n0.2,0.7\n");
-  EXPECT_TRUE(make_initial_state(make_problem(b), go_on).mu_s.empty());
+  EXPECT_TRUE(setup::make_initial_state(make_problem(b), go_on).mu_s.empty());
   EXPECT_NE(make_problem(a).source.state_key, make_problem(b).source.state_key);
   b.friction_along_x = a.friction_along_x;
   EXPECT_EQ(make_problem(a).source.state_key, make_problem(b).source.state_key);
@@ -115,11 +115,11 @@ TEST(FrictionAlongX, ARampEndsWhereTheStrengthIsReachedFirst) {
   test::law(c).mu_k = 0.05;
   constexpr double weak = 0.2;
   test::set_table(c, fmt::format("x_m,mu_s\n0,1.3\n0.055,1.3\n0.06,{}\n0.065,1.3\n0.2,1.3\n", weak));
-  const auto direct = make_initial_state(make_problem(c), go_on);
+  const auto direct = setup::make_initial_state(make_problem(c), go_on);
   EXPECT_NEAR(direct.subcritical.peak_x_m, 0.06, 1e-9);
   EXPECT_NEAR(direct.subcritical.peak_ratio, weak * (1 - c.loading.critical_margin), 1e-6);
   c.loading.method = statics::LoadingMethod::ramp;
-  const auto ramp = make_initial_state(make_problem(c), go_on);
+  const auto ramp = setup::make_initial_state(make_problem(c), go_on);
   EXPECT_EQ(ramp.subcritical.peak_x_m, direct.subcritical.peak_x_m);
   EXPECT_EQ(ramp.supercritical.peak_x_m, direct.subcritical.peak_x_m);
   // Waves that go to and fro in the plate make the explicit state wobble.
@@ -162,20 +162,20 @@ TEST(FrictionAlongX, WarningsAndTriggersGoByEachNode) {
 TEST(FrictionAlongX, InfoTellsTheWorstNode) {
   auto c = rupture();
   c.friction = interface::VelocityWeakening { 0.6, 0.3, 0.1 };
-  EXPECT_TRUE(std::isnan(info(make_problem(c)).well_posedness_x_m));
+  EXPECT_TRUE(std::isnan(advice::info(make_problem(c)).well_posedness_x_m));
   test::set_table(c, "x_m,mu_k\n0,0.5\n0.1,0.2\n0.2,0.4\n");
-  const auto varying = info(make_problem(c));
+  const auto varying = advice::info(make_problem(c));
   EXPECT_NEAR(varying.well_posedness_x_m, 0.1, 1e-9);
   c.friction_along_x = {};
   c.friction = interface::VelocityWeakening { 0.6, 0.2, 0.1 };
   EXPECT_DOUBLE_EQ(varying.well_posedness.growth_at_grid_per_s,
-                   info(make_problem(c)).well_posedness.growth_at_grid_per_s);
+                   advice::info(make_problem(c)).well_posedness.growth_at_grid_per_s);
 }
 
 TEST(FrictionAlongX, ParametersOfNodesAreWritten) {
   const test::TemporaryFolder folder;
   const auto c = rupture("x_m,mu_s\n0,0.6\n0.2,0.7\n");
-  write_static(folder.path(), make_problem(c), make_initial_state(make_problem(c), go_on));
+  write_static(folder.path(), make_problem(c), setup::make_initial_state(make_problem(c), go_on));
   const auto text = test::read_file(folder / "static.csv");
   EXPECT_THAT(text,
               ::testing::StartsWith(

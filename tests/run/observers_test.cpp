@@ -28,7 +28,7 @@ motion::Observers list_of(std::unique_ptr<motion::Observer> observer) {
 
 TEST(Observers, TheExampleEndsAnEventAtASlip) {
   const auto config = coarse_case();
-  const auto initial = make_initial_state(make_problem(config), test::go_on);
+  const auto initial = setup::make_initial_state(make_problem(config), test::go_on);
   const auto whole = run_from(make_problem(config), initial, test::go_on);
   const auto& slip_m = whole.event.history.slip_m;
   const double limit_m = 0.5 * *std::ranges::max_element(slip_m);

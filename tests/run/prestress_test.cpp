@@ -147,7 +147,7 @@ TEST(PrestressColumn, TwoOfTractionSlipRateAndStateGiveTheThird) {
   c.prestress.p_Pa = 5e6;
   const auto t_s = [&] {
     c.friction = law;
-    return make_initial_state(make_problem(c), go_on).subcritical.tractions.t_s_Pa.front();
+    return setup::make_initial_state(make_problem(c), go_on).subcritical.tractions.t_s_Pa.front();
   };
   EXPECT_DOUBLE_EQ(t_s(), 5e6 * (0.6 - 0.008 * std::log(1e-3)));  // steady sliding at 1e-9 m/s
   // Problem R-A: theta_i = 0.159228803985 s at 1e-9 m/s is tau = 2.65 MPa.
@@ -225,7 +225,7 @@ TEST(Nucleation, OverstressIsAnExternalForceWithTheTriggersRamp) {
 TEST(Nucleation, StartsAnEventOfTheTiltedPlateToo) {
   auto c = test::coarse_case(EventKind::nucleation);
   c.nucleation = {.x_m = 0.1, .half_length_m = 5e-3, .taper_m = 5e-3};
-  const auto initial = make_initial_state(make_problem(c), go_on);
+  const auto initial = setup::make_initial_state(make_problem(c), go_on);
   const auto result = run_from(make_problem(c), initial, go_on);
   EXPECT_FALSE(result.event.record.onsets.empty());
   c.event = EventKind::none;
@@ -240,7 +240,7 @@ TEST(Nucleation, ExcludedZoneOfAPatchAtThePeriodicEdge) {
   c.event = EventKind::nucleation;
   c.nucleation = {.x_m = 0.01, .half_length_m = 5e-3, .taper_m = 5e-3};
   c.fronts.trigger_margin_m = 10e-3;
-  const auto options = front_options(make_problem(c), make_initial_state(make_problem(c), go_on));
+  const auto options = front_options(make_problem(c), setup::make_initial_state(make_problem(c), go_on));
   for (const double x : {0.0, 0.029, 0.091, 0.099}) EXPECT_TRUE(fronts::is_excluded(options, x)) << x;
   for (const double x : {0.031, 0.05, 0.089}) EXPECT_FALSE(fronts::is_excluded(options, x)) << x;
   for (const double x : {0.0, 0.02, 0.1}) EXPECT_TRUE(fronts::is_driven(options, x)) << x;
@@ -356,8 +356,7 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
   c.prestress.file = file.string();
   c.prestress.table = input::read_prestress(file);
   const auto key = make_problem(c).source.state_key;
-  const auto state = make_initial_state(make_problem(c), go_on);
-  EXPECT_TRUE(state.prescribed);
+  const auto state = setup::make_initial_state(make_problem(c), go_on);
   EXPECT_DOUBLE_EQ(state.subcritical.tractions.t_s_Pa[1], 1.5e5);
   EXPECT_DOUBLE_EQ(state.subcritical.tractions.p_s_Pa[3], 1.75e6);
   EXPECT_DOUBLE_EQ(state.subcritical.peak_ratio, 0.15);

@@ -35,7 +35,7 @@ using test::law;
 constexpr double solve_error = 1e-9;
 
 const InitialState& coarse_state() {
-  static const InitialState initial = make_initial_state(make_problem(coarse_case()), go_on);
+  static const InitialState initial = setup::make_initial_state(make_problem(coarse_case()), go_on);
   return initial;
 }
 
@@ -91,7 +91,7 @@ TEST(InitialState, IsAtItsRatioOrRefused) {
     law(config).mu_k = 0.1;
     config.loading.critical_margin = margin;
     try {
-      const auto initial = make_initial_state(make_problem(config), go_on);
+      const auto initial = setup::make_initial_state(make_problem(config), go_on);
       EXPECT_NEAR(initial.subcritical.peak_ratio, (1 - margin) * mu_s, mu_s * solve_error);
       EXPECT_NEAR(initial.supercritical.peak_ratio, (1 + margin) * mu_s, mu_s * solve_error);
       EXPECT_LT(initial.subcritical.shear_m, initial.supercritical.shear_m);
@@ -114,9 +114,9 @@ TEST(InitialState, IsAtItsRatioOrRefused) {
 TEST(InitialState, NeedsContactAndAnInside) {
   auto margin = coarse_case(), tilt = coarse_case();
   margin.loading.edge_margin_m = 0.12;
-  EXPECT_THROW(make_initial_state(make_problem(margin), go_on), UserError);
+  EXPECT_THROW(setup::make_initial_state(make_problem(margin), go_on), UserError);
   tilt.loading.tilt_left_m = tilt.loading.tilt_right_m = 0;
-  EXPECT_THROW(make_initial_state(make_problem(tilt), go_on), UserError);
+  EXPECT_THROW(setup::make_initial_state(make_problem(tilt), go_on), UserError);
 }
 
 using Change = std::pair<const char*, void (*)(input::Case&)>;
@@ -185,7 +185,7 @@ TEST(InitialStateKey, EqualKeysMeanEqualStates) {
   config.material.stiffness_damping_s = 1e-6;
   law(config).mu_k = 1.0;
   ASSERT_EQ(make_problem(config).source.state_key, make_problem(coarse_case()).source.state_key);
-  const auto other = make_initial_state(make_problem(config), go_on);
+  const auto other = setup::make_initial_state(make_problem(config), go_on);
   EXPECT_TRUE(same_bits(other.subcritical.u_m, coarse_state().subcritical.u_m));
   EXPECT_TRUE(same_bits(other.supercritical.u_m, coarse_state().supercritical.u_m));
   EXPECT_TRUE(same_bits(other.subcritical.tractions.t_s_Pa, coarse_state().subcritical.tractions.t_s_Pa));
@@ -194,7 +194,7 @@ TEST(InitialStateKey, EqualKeysMeanEqualStates) {
 
 TEST(Event, SpontaneousFrontsRunBothWaysFromThePeak) {
   const auto config = coarse_case(EventKind::spontaneous, 2e-3);
-  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto initial = setup::make_initial_state(make_problem(config), go_on);
   const auto result = run_from(make_problem(config), initial, go_on);
   ASSERT_FALSE(result.event.record.onsets.empty());
   const auto& state = initial.supercritical;
@@ -304,8 +304,8 @@ TEST(Info, AgreesWithTheRun) {
     auto config = coarse_case();
     config.plate.corner = corner;
     config.time.quiet_s = std::numeric_limits<double>::infinity();  // to the end
-    const auto info = run::info(make_problem(config));
-    const auto initial = make_initial_state(make_problem(config), go_on);
+    const auto info = advice::info(make_problem(config));
+    const auto initial = setup::make_initial_state(make_problem(config), go_on);
     const auto result = run_from(make_problem(config), initial, go_on);
     EXPECT_EQ(result.event.end, motion::EventEnd::end_time);
     EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
@@ -339,9 +339,9 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
   config.nucleation.x_m = 0.1;
   const double before = allocated_bytes();
   if (before == 0) GTEST_SKIP() << "the allocator does not tell";
-  auto initial = make_initial_state(make_problem(config), go_on);
+  auto initial = setup::make_initial_state(make_problem(config), go_on);
   const auto n = static_cast<double>(initial.n_nodes);
-  const auto stepper = start_event(make_problem(config), initial);
+  const auto stepper = setup::start_event(make_problem(config), initial);
   const double held = allocated_bytes() - before;
   // Mass, u, v: 40 bytes a node, and less than four for the levels. Besides, own stencils of the
   // sides and block rows of the loaded edge, once of the plate and once of a level: 9 blocks of 36 bytes
@@ -357,8 +357,8 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
 TEST(Ramp, ReachesTheDirectCriticalShear) {
   const auto config = test::ramped_case();
   std::int64_t asked = 0;
-  const auto initial =
-      make_initial_state(make_problem(config), [&](std::int64_t, std::int64_t) { return ++asked > 0; });
+  const auto initial = setup::make_initial_state(make_problem(config),
+                                                 [&](std::int64_t, std::int64_t) { return ++asked > 0; });
   ASSERT_TRUE(initial.ramp.has_value());
   EXPECT_GT(asked, 0);
   EXPECT_GT(initial.ramp->steps, 10000);
@@ -370,7 +370,8 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   EXPECT_GE(initial.supercritical.peak_ratio, (1 - motion::ramp_handover) * 1.3);
 
   const auto result = run_from(make_problem(config), initial, go_on);
-  const auto direct = make_initial_state(make_problem(coarse_case(EventKind::spontaneous, 5e-3)), go_on);
+  const auto direct =
+      setup::make_initial_state(make_problem(coarse_case(EventKind::spontaneous, 5e-3)), go_on);
   EXPECT_EQ(direct.critical_shear_m, initial.critical_shear_m);
   EXPECT_EQ(direct.subcritical.peak_x_m, initial.subcritical.peak_x_m);
   for (const int direction : {-1, 1}) {
@@ -388,7 +389,7 @@ TEST(PlainStepper, RunsACaseAsTheFastOneDoes) {
   const auto fast = test::run_case(config);
   EXPECT_GT(fast.event.record.onsets.size(), 20U);
   config.time.stepper = motion::StepperKind::plain;
-  EXPECT_GT(info(make_problem(config)).expected_s, 0);
+  EXPECT_GT(advice::info(make_problem(config)).expected_s, 0);
   const auto plain = test::run_case(config);
   EXPECT_EQ(plain.event.steps, fast.event.steps);
   EXPECT_EQ(plain.node_updates_per_step, fast.node_updates_per_step);

@@ -508,7 +508,7 @@ TEST(Sequences, AreExtended) {
 TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
   auto config = rate_and_state_case(2);
   const double a = config.friction.parameter("a");
-  const auto refused = [&] { return error_of([&] { check(make_problem(config)); }); };
+  const auto refused = [&] { return error_of([&] { setup::check(make_problem(config)); }); };
   config.friction.parameter("b") = a;
   EXPECT_THAT(refused(), HasSubstr("no event comes; choose sequence.end_s"));
   // Along x what counts is the weakest.
@@ -520,13 +520,13 @@ TEST(Sequence, SlowSlipThatNoEventEndsNeedsAnEnd) {
   along_x(2 * a);
   EXPECT_THAT(refused(), HasSubstr("no event comes"));
   along_x(0.5 * a);
-  check(make_problem(config));
+  setup::check(make_problem(config));
   along_x(2 * a);
   config.sequence.end_s = 10;
-  check(make_problem(config));
+  setup::check(make_problem(config));
   config.sequence.end_s = infinity;
   config.sequence.path = {{10}, {1e-6}};
-  check(make_problem(config));
+  setup::check(make_problem(config));
 }
 
 /// Friction that strengthens: rows come until the time at which it ends.

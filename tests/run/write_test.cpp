@@ -34,7 +34,7 @@ class WrittenRun : public testing::Test {
       config = coarse_case();
       config.title = "a \"written\" run";
       config.output.snapshot_times_s = {0, 10e-6, 30e-6};
-      initial = make_initial_state(make_problem(config), go_on);
+      initial = setup::make_initial_state(make_problem(config), go_on);
       result = run_from(make_problem(config), initial, go_on);
       write(folder.path(), result, initial);
     }
@@ -232,7 +232,7 @@ std::filesystem::path run_streamed(const input::Case& config, const std::filesys
 
 void run_in_memory(const input::Case& config, const std::filesystem::path& dir,
                    const motion::Monitor& monitor) {
-  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto initial = setup::make_initial_state(make_problem(config), go_on);
   write(dir, run_from(make_problem(config), initial, monitor), initial);
 }
 
@@ -283,7 +283,7 @@ TEST(StreamedRun, EqualsTheOneKeptInMemory) {
 
 TEST(Write, OfARampTellsBothWays) {
   const auto config = test::ramped_case();
-  const auto initial = make_initial_state(make_problem(config), go_on);
+  const auto initial = setup::make_initial_state(make_problem(config), go_on);
   const test::TemporaryFolder folder;
   write(folder.path(), run_from(make_problem(config), initial, go_on), initial);
   const json ramp = json::parse(test::read_file(folder / "run.json"))["statics"]["ramp"];

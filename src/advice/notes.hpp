@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "advice/outlook.hpp"
+#include "base/error.hpp"
+#include "problem/problem.hpp"
+
+namespace slipfront::advice {
+
+/// What is allowed in a case but is hardly meant, decides physics unasked, or keeps it from a rupture, a line
+/// each.
+/// @param step_s  of the run, or as estimated_size gives it
+std::vector<std::string> notes_of_case(const Problem& problem, const RuptureOutlook& rupture, double step_s);
+
+/// Why a sequence under a law with a state, whose run needs none, has no static state to predict from.
+std::string no_static_state(const UserError& error);
+
+}  // namespace slipfront::advice
