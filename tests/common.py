@@ -190,6 +190,11 @@ def run_json(folder):
     return json.loads((folder / "run.json").read_text())
 
 
+def notes_of(info):
+    """Texts of the notes in a run.json or sequence.json."""
+    return [note["text"] for note in info["notes"]]
+
+
 def rows_of(file):
     """Rows of a table, by the names of its columns."""
     with open(file, newline="") as stream:

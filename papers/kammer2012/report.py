@@ -95,7 +95,6 @@ def runs_table(results: Results) -> str:
     """A row for each run, and where the page of it alone comes from."""
     rows = []
     for name, run in results.runs.items():
-        told = run.info.get("warnings", [])
         folder = words(results.folder / name)
         rows.append(
             [
@@ -103,11 +102,11 @@ def runs_table(results: Results) -> str:
                 words(run.info.get("title", "")),
                 single.ending(run),
                 str(len(run.front_list)),
-                str(len(told) if isinstance(told, list) else 0),
+                str(len(run.notes)),
                 f"<code>slipfront report {folder}</code>",
             ]
         )
-    return table(["Run", "Case", "End", "Fronts", "Warnings", "A page of its own"], rows)
+    return table(["Run", "Case", "End", "Fronts", "Notes", "A page of its own"], rows)
 
 
 def run_list() -> str:

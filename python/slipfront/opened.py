@@ -18,6 +18,7 @@ import xarray as xr
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
+from slipfront._core import Note
 from slipfront.files import DataError, Table, dataset, is_number, number, open_hdf5, read_table, read_toml
 from slipfront.folder import belongs, result_file
 from slipfront.read import (
@@ -32,6 +33,7 @@ from slipfront.read import (
     entry,
     is_open,
     n_finite,
+    notes_of,
     open_history,
     ratio,
     read_balance,
@@ -183,9 +185,15 @@ class Opened:
 
     @property
     def info(self) -> dict[str, Any]:
-        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings; or sequence.json:
-        version, end, wave speeds, number of events, largest friction, last state, imbalance of energy."""
+        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, notes; or sequence.json:
+        version, end, wave speeds, number of events, largest friction, last state, imbalance of energy,
+        notes."""
         return deepcopy(self.place.info)  # what others read stays as the file has it
+
+    @property
+    def notes(self) -> list[Note]:
+        """What to know of the results: as of `slipfront.info`, and of what happened in the run."""
+        return notes_of(self.info)
 
     @property
     def status(self) -> str:

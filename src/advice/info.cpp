@@ -90,18 +90,18 @@ bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness&
 }
 
 /// @return notes: of which friction nothing can be said
-std::vector<std::string> add_well_posedness(const Problem& problem, const mesh::Mesh& mesh, Info& info) {
+Diagnostics add_well_posedness(const Problem& problem, const mesh::Mesh& mesh, Info& info) {
   const double pressure_Pa = nominal_pressure_Pa(problem);
-  std::vector<std::string> notes;
+  Diagnostics notes;
   auto& worst = info.well_posedness;
   const auto consider = [&](const interface::FrictionLaw& law, double x_m) {
     const auto here =
         stability::well_posedness(materials_of(problem), law, pressure_Pa, problem.element_size_m(),
                                   problem.width_m(), problem.friction.regularisation);
     if (!here.has_verdict())
-      notes.push_back(fmt::format(
-          "uniform sliding{}: {}",
-          std::isnan(x_m) ? "" : fmt::format(" with the friction at x = {:.4g} m", x_m), here.statement));
+      notes.add(Diagnostic::Kind::physics, "uniform sliding{}: {}",
+                std::isnan(x_m) ? "" : fmt::format(" with the friction at x = {:.4g} m", x_m),
+                here.statement);
     if (!worst.statement.empty() && !is_worse(here, worst)) return;
     worst = here;
     info.well_posedness_x_m = x_m;
@@ -116,7 +116,8 @@ std::vector<std::string> add_well_posedness(const Problem& problem, const mesh::
   if (can_slip.empty()) {
     worst.fastest_growth_per_s = nan;
     worst.statement = "no verdict: t is too far below the strength for any node to slip";
-    return {"uniform sliding: " + worst.statement};
+    notes.add(Diagnostic::Kind::physics, "uniform sliding: {}", worst.statement);
+    return notes;
   }
   for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, problem.friction.regularisation))
     consider(laws[node], x_m[node]);
@@ -345,8 +346,8 @@ Info info(const Problem& problem, const std::optional<int>& n_processes) {
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info) +
                     expected_rest_s(info) + expected_slow_s(info);
   info.notes = notes_of_case(problem, info.rupture, info.step_s);
-  if (!not_loaded.empty()) info.notes.push_back(not_loaded);
-  info.notes.insert(info.notes.end(), notes_on_sliding.begin(), notes_on_sliding.end());
+  if (!not_loaded.empty()) info.notes.add(Diagnostic::Kind::physics, "{}", not_loaded);
+  info.notes.add(notes_on_sliding);
   if (n_processes) info.shared = shared_by(problem, meshes, timed, *n_processes, info);
   return info;
 }

@@ -9,6 +9,7 @@
 #include "advice/mesh_choice.hpp"
 #include "advice/needs.hpp"
 #include "advice/outlook.hpp"
+#include "base/diagnostic.hpp"
 #include "base/numbers.hpp"
 #include "motion/partition.hpp"
 #include "problem/problem.hpp"

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "advice/outlook.hpp"
+#include "base/diagnostic.hpp"
 #include "base/error.hpp"
 #include "problem/problem.hpp"
 
@@ -13,7 +13,10 @@ namespace slipfront::advice {
 /// What is allowed in a case but is hardly meant, decides physics unasked, or keeps it from a rupture, a line
 /// each.
 /// @param step_s  of the run, or as estimated_size gives it
-std::vector<std::string> notes_of_case(const Problem& problem, const RuptureOutlook& rupture, double step_s);
+Diagnostics notes_of_case(const Problem& problem, const RuptureOutlook& rupture, double step_s);
+
+/// Those before the statics are solved. @throws UserError as require_memory_fits and setup::check
+Diagnostics notes_of_case(const Problem& problem);
 
 /// Why a sequence under a law with a state, whose run needs none, has no static state to predict from.
 std::string no_static_state(const UserError& error);

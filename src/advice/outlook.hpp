@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "advice/prediction.hpp"
+#include "base/diagnostic.hpp"
 #include "problem/problem.hpp"
 #include "setup/initial_state.hpp"
 #include "setup/meshes.hpp"
@@ -29,7 +30,7 @@ struct RuptureOutlook {
   /// Its fronts as cracks, where that is known quickly.
   std::optional<FracturePrediction> cracks;
   std::vector<std::string> doubts;  ///< why nothing may rupture, a line each
-  std::vector<std::string> notes;   ///< what mesh and damping decide of it, a line each
+  Diagnostics notes;                ///< what mesh, damping and trigger decide of it
 };
 
 /// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005), which peaks

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "base/numbers.hpp"
 #include "fracture/prediction.hpp"
 #include "problem/problem.hpp"
@@ -34,8 +35,8 @@ struct FracturePrediction {
   /// Length of a patch where the fronts begin over which slow slip runs away; not a number where none does,
   /// or where friction does not weaken over a slip.
   double nucleation_length_m = nan;
-  std::string bodies;              ///< whose static response it is, in words
-  std::vector<std::string> notes;  ///< what it leaves out, a line each
+  std::string bodies;  ///< whose static response it is, in words
+  Diagnostics notes;   ///< what it leaves out
   /// Why fronts may run on where they arrest by it; then no arrest is predicted.
   std::vector<std::string> doubts_of_arrest;
   bool predicts_arrest(const fracture::PredictedFront& front) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "cli/program.hpp"
 #include "input/schema.hpp"
 #include "processes/processes.hpp"
@@ -31,12 +32,17 @@ std::string version_text();
 struct CaseArguments {
   std::string file;
   std::vector<std::string> set;
+  bool strict = false;
 
   input::CaseFile read() const;
+  /// @throws UserError where the command is strict and a note is of units or resolution
+  void require_none_refused(const Diagnostics& notes) const;
 };
 
 /// Adds them to a subcommand; filled when the command line is parsed. The subcommand's callback must keep the
 /// result alive by capturing it.
 std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command);
+/// Adds --strict to a subcommand that tells the notes of a case.
+void add_strict(CLI::App& command, CaseArguments& arguments);
 
 }  // namespace slipfront::cli

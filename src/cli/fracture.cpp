@@ -17,6 +17,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/print.hpp"
+#include "cli/words.hpp"
 #include "files/files.hpp"
 #include "fracture/prediction.hpp"
 #include "problem/problem.hpp"
@@ -124,8 +125,7 @@ void predict(const CaseArguments& arguments, const FractureOptions& options) {
         "nucleation length {:.3g} m, of this sample where the crack begins: slow slip over it runs away\n",
         p.nucleation_length_m);
   for (const auto& front : of.fronts) text += line_of(p, front, c_S);
-  for (const auto& note : given.notes()) text += fmt::format("note: {}\n", note);
-  for (const auto& note : p.notes) text += fmt::format("note: {}\n", note);
+  text += lines_of(given, p.notes);
   if (!options.output.empty()) {
     files::write_text(options.output, csv(of));
     text += fmt::format("results: {}\n", options.output);

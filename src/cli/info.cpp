@@ -268,6 +268,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   const auto given = arguments.read();
   const auto problem = problem::make_problem(given.config());
   const auto info = given.placing_errors([&] { return advice::info(problem, n_processes); });
+  arguments.require_none_refused(info.notes);
   Listing list;
   if (!problem.source.title.empty()) list.add("title", files::one_line(problem.source.title));
   list.add("set-up", set_up(problem));
@@ -286,9 +287,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_rupture(info.rupture, problem.friction.law.name(), list);
   if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);
   if (info.cheapest_mesh) add_mesh_choice(problem, *info.cheapest_mesh, list);
-  for (const auto& note : given.notes()) list.text += fmt::format("note: {}\n", note);
-  for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);
-  print_output(list.text);
+  print_output(list.text + lines_of(given, info.notes));
 }
 
 }  // namespace
@@ -299,6 +298,7 @@ void add_info(CLI::App& app) {
       "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
   command->group("Cases");
   const auto arguments = add_case_arguments(*command);
+  add_strict(*command, *arguments);
   auto n_processes = std::make_shared<std::optional<int>>();
   command->add_option("--processes", *n_processes, "Also predict time and memory of a run on N MPI ranks")
       ->check(CLI::Range(1, 10'000'000));

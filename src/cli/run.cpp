@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "advice/needs.hpp"
+#include "advice/notes.hpp"
 #include "advice/outlook.hpp"
 #include "advice/prediction.hpp"
 #include "base/error.hpp"
@@ -20,7 +21,6 @@
 #include "cli/words.hpp"
 #include "fracture/passage.hpp"
 #include "fronts/fit.hpp"
-#include "problem/source.hpp"
 #include "results/folder.hpp"
 #include "run/session.hpp"
 #include "setup/subdomains.hpp"
@@ -128,6 +128,10 @@ void print_fronts(const run::Result& result) {
                fmt::join(of_trigger, ", "));
 }
 
+void print_notes(const Diagnostics& notes) {
+  for (const auto& note : notes) print("note: {}\n", note.text);
+}
+
 void print_summary(const run::Result& result, const InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   print("{}\n{}\n", outcome(result), set_up(result.problem));
@@ -159,7 +163,7 @@ void print_summary(const run::Result& result, const InitialState& initial, const
   print("ended: {}\n", run::end_of_event(result));
   print_fronts(result);
   print_rupture(result.rupture);
-  for (const auto& warning : result.warnings) print("note: {}\n", warning);
+  print_notes(result.notes);
   print("results: {}\n", dir);
 }
 
@@ -208,18 +212,7 @@ void print_event(std::size_t number, const record::SequenceEvent& e) {
         extent, e.friction_before, e.friction_after, e.n_fronts, e.n_fronts == 1 ? "front" : "fronts");
 }
 
-/// Events that begin as soon as one place passes mu_s by little may be of that place alone.
-void print_note_on_margin(const Problem& problem, const std::vector<record::SequenceEvent>& events) {
-  constexpr double small_m = 1e-7, usual_margin = 0.01;
-  const auto n_small = std::ranges::count_if(events, [](const auto& e) { return e.max_slip_m < small_m; });
-  if (problem.is_slow() || n_small == 0 || problem.loading.critical_margin >= usual_margin) return;
-  print(
-      "note: {} of {} events slip by nanometres, less than 0.1 um: they begin where t/p passes mu_s by "
-      "loading.critical_margin = {:g}; a larger one, 0.01 to 0.03, leaves larger events alone\n",
-      n_small, events.size(), problem.loading.critical_margin);
-}
-
-void print_sequence(const run::Finished& finished, const Problem& problem, const std::string& dir) {
+void print_sequence(const run::Finished& finished, const std::string& dir) {
   const auto& events = finished.events;
   print("{}\n", outcome(events));
   const auto& strongest = record::strongest(finished.loading);
@@ -230,7 +223,7 @@ void print_sequence(const run::Finished& finished, const Problem& problem, const
       std::ranges::none_of(events, [](const auto& e) { return std::isnan(e.nucleation_length_m); }))
     print("{} of them longer than the nucleation length, or global\n",
           std::ranges::count_if(events, record::has_nucleated));
-  print_note_on_margin(problem, events);
+  print_notes(finished.notes);
   print("results: {}\n", dir);
 }
 
@@ -259,6 +252,9 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
       advice::require_memory_fits(given->problem, processes);
       setup::require_divisible(given->problem, processes);
     });
+  if (given && arguments.strict)
+    arguments.require_none_refused(
+        given->file.placing_errors([&] { return advice::notes_of_case(given->problem); }));
   catch_interrupts();
   try {
     auto hooks = cli::hooks(options.quiet);
@@ -284,7 +280,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     if (finished.end.empty())
       print_summary(finished.last.result, finished.last.initial, folder.dir().string());
     else
-      print_sequence(finished, problem::read_problem(folder.dir()), folder.dir().string());
+      print_sequence(finished, folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;
     throw WriteError("{}; {}", error.what(), run::how_to_resume(folder));
@@ -297,6 +293,7 @@ void add_run(CLI::App& app, Processes& processes) {
   CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
   command->group("Cases");
   const auto arguments = add_case_arguments(*command);
+  add_strict(*command, *arguments);
   auto options = std::make_shared<RunArguments>();
   options->session.processes = &processes;
   command->get_option("CASE")->required(false);

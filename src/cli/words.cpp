@@ -185,4 +185,11 @@ std::string outcome(const std::vector<record::SequenceEvent>& events) {
                      from == to ? from : from + " to " + to);
 }
 
+std::string lines_of(const input::CaseFile& given, const Diagnostics& notes) {
+  std::string lines;
+  for (const auto& note : given.notes()) lines += fmt::format("note: {}\n", note);
+  for (const auto& note : notes) lines += fmt::format("note: {}\n", note.text);
+  return lines;
+}
+
 }  // namespace slipfront::cli

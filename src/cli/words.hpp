@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
+#include "input/schema.hpp"
 #include "problem/problem.hpp"
 #include "record/sequence.hpp"
 #include "run/run.hpp"
@@ -32,5 +34,8 @@ double median_speed_m_per_s(const fronts::Front& front);
 bool is_of_trigger(const fronts::Front& front);
 /// Median of the breakdown work that came to its end along a front.
 double fracture_energy_J_per_m2(const run::Result& result, const fronts::Front& front);
+
+/// Notes, a line each: what the case file says in vain, and of the case.
+std::string lines_of(const input::CaseFile& given, const Diagnostics& notes);
 
 }  // namespace slipfront::cli

@@ -57,7 +57,9 @@ nb::dict predict_fronts(const input::CaseFile& given, const Values& x_m, const V
   found["critical_length_m"] = of.critical_length_m;
   found["nucleation_length_m"] = p.nucleation_length_m;
   found["bodies"] = p.bodies;
-  found["notes"] = p.notes;
+  nb::list notes;
+  for (const auto& note : p.notes) notes.append(note.text);
+  found["notes"] = notes;
   found["law_has_length"] = advice::has_fracture_energy(problem);
   found["doubts_of_arrest"] = p.doubts_of_arrest;
   return found;

@@ -19,29 +19,6 @@ namespace slipfront::run {
 
 namespace {
 
-/// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
-std::string contact_warning(const statics::Equilibrium& state) {
-  const auto n_slip = std::ranges::count(state.contact, statics::Contact::slip);
-  const auto n_open = std::ranges::count(state.contact, statics::Contact::open);
-  if (n_slip + n_open == 0) return {};
-  std::int64_t n_inside = 0;
-  for (std::size_t k = 0; k < state.contact.size(); ++k) {
-    const bool is_inside = state.is_inside(state.tractions.x_m[k]);
-    n_inside += is_inside && state.contact[k] != statics::Contact::stick ? 1 : 0;
-  }
-  return fmt::format(
-      "before the event {} interface nodes are open and {} slip at mu_s p, {} {:.4g} to {:.4g} m", n_open,
-      n_slip, n_inside == 0 ? "all outside" : fmt::format("{} of them within", n_inside), state.inside_from_m,
-      state.inside_to_m);
-}
-
-/// Empty where a ramp resolves the margin, or there is none.
-std::string ramp_warning(const std::optional<motion::Ramp>& ramp) {
-  if (!ramp || !ramp->passed_margin_in_a_step()) return {};
-  return "the ramp brings t/p from below (1 - loading.critical_margin) mu_s to slip within a step: the state "
-         "in which triggered events begin is the critical one; choose a lower loading.shear_speed_m_per_s";
-}
-
 /// A number of the law of each node, or of the one of all.
 template <class Of>
 PerNode at_nodes(Of of, const interface::FrictionLaw& of_all,
@@ -151,6 +128,87 @@ std::string end_of_event(const Result& result) {
       result.event.time_s, problem.time.quiet_s, result.event.quiet_slip_rate_m_per_s);
 }
 
+namespace {
+
+using enum Diagnostic::Kind;
+
+/// Nodes in contact that slip or are open at rest.
+void add_contact(const statics::Equilibrium& state, Diagnostics& notes) {
+  const auto n_slip = std::ranges::count(state.contact, statics::Contact::slip);
+  const auto n_open = std::ranges::count(state.contact, statics::Contact::open);
+  if (n_slip + n_open == 0) return;
+  std::int64_t n_inside = 0;
+  for (std::size_t k = 0; k < state.contact.size(); ++k) {
+    const bool is_inside = state.is_inside(state.tractions.x_m[k]);
+    n_inside += is_inside && state.contact[k] != statics::Contact::stick ? 1 : 0;
+  }
+  notes.add(physics,
+            "before the event {} interface nodes are open and {} slip at mu_s p, {} {:.4g} to {:.4g} m",
+            n_open, n_slip, n_inside == 0 ? "all outside" : fmt::format("{} of them within", n_inside),
+            state.inside_from_m, state.inside_to_m);
+}
+
+/// Energy that single precision leaves open.
+void add_imbalance(const Result& result, Diagnostics& notes) {
+  if (result.problem.time.precision != motion::Precision::single_precision) return;
+  constexpr double most = 1e-3;
+  const auto& before = result.event.energies.front();
+  double largest = 0, imbalance = 0;
+  for (const auto& e : result.event.energies) {
+    imbalance = std::max(imbalance, std::abs(record::imbalance_J_per_m(e, before)));
+    for (const auto& term : record::energy_terms)
+      largest = std::max(largest, std::abs(e.*term.member - before.*term.member));
+  }
+  if (imbalance > most * largest)
+    notes.add(
+        resolution,
+        "time.precision = single leaves {:.2g} of the largest change of energy open: the motion is small "
+        "against what rounding takes from it; choose double",
+        imbalance / largest);
+}
+
+void add_notes_of_event(Result& result, const InitialState& initial, const fronts::FrontOptions& options) {
+  const auto& problem = result.problem;
+  const auto& event = result.event;
+  auto& notes = result.notes;
+  add_contact(initial.subcritical, notes);
+  if (initial.ramp && initial.ramp->passed_margin_in_a_step())
+    notes.add(resolution,
+              "the ramp brings t/p from below (1 - loading.critical_margin) mu_s to slip within a step: the "
+              "state in which triggered events begin is the critical one; choose a lower "
+              "loading.shear_speed_m_per_s");
+  const double stored = event.energies.front().strain, trigger_work = event.energies.back().trigger_work;
+  if (!problem.is_prestressed() && stored > 0 && trigger_work > 0.1 * stored)
+    notes.add(physics,
+              "the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, and drives the "
+              "motion behind the front",
+              trigger_work, 100 * trigger_work / stored);
+  add_imbalance(result, notes);
+  const auto n_after = setup::snapshots_after(problem, event.time_s).size();
+  if (event.end != motion::EventEnd::end_time && n_after > 0)
+    notes.add(output, "{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
+              problem.output.snapshot_times_s.size(), end_of_event(result));
+  if (const double wait_s = fronts::arrest_time_s(event.record, options); wait_s > options.arrest_time_s)
+    notes.add(
+        output,
+        "slip spreads slowly: a tip has arrested after a wait of {:.3g} s, not of fronts.arrest_time_s = "
+        "{:g} s",
+        wait_s, options.arrest_time_s);
+  const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
+  const auto running = n_running == 1 ? std::string("1 front") : fmt::format("{} fronts", n_running);
+  if (event.end == motion::EventEnd::quiet && n_running > 0)
+    notes.add(output,
+              "{} may still have been under way when the event ended ({}); time.quiet_s = inf goes on to "
+              "time.end_s",
+              running, end_of_event(result));
+  if (event.end == motion::EventEnd::end_time && n_running > 0)
+    notes.add(output, "{} may still be under way at time.end_s = {:g} s; choose a later end to see more",
+              running, problem.time.end_s);
+  if (event.record.onsets.empty()) notes.add(physics, "no node slipped");
+}
+
+}  // namespace
+
 void analyse(Result& result, const InitialState& initial) {
   analyse(result, initial,
           advice::rupture_outlook(result.problem, initial.subcritical, initial.tributary_m, initial.healed));
@@ -168,56 +226,21 @@ void analyse(Result& result, const InitialState& initial, const advice::RuptureO
   auto rupture = outlook;
   if (result.fronts.empty())
     for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
-  result.warnings = advice::notes_of_case(problem, rupture, result.step_s);
-  if (auto warning = contact_warning(initial.subcritical); !warning.empty())
-    result.warnings.push_back(warning);
-  if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
-  const auto& before = result.event.energies.front();
-  const auto& after = result.event.energies.back();
-  if (!problem.is_prestressed() && before.strain > 0 && after.trigger_work > 0.1 * before.strain)
-    result.warnings.push_back(
-        fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, "
-                    "and drives the motion behind the front",
-                    after.trigger_work, 100 * after.trigger_work / before.strain));
-  if (problem.time.precision == motion::Precision::single_precision) {
-    constexpr double most = 1e-3;
-    double largest = 0, imbalance = 0;
-    for (const auto& e : result.event.energies) {
-      imbalance = std::max(imbalance, std::abs(record::imbalance_J_per_m(e, before)));
-      for (const auto& term : record::energy_terms)
-        largest = std::max(largest, std::abs(e.*term.member - before.*term.member));
-    }
-    if (imbalance > most * largest)
-      result.warnings.push_back(fmt::format(
-          "time.precision = single leaves {:.2g} of the largest change of energy open: the motion is "
-          "small against what rounding takes from it; choose double",
-          imbalance / largest));
-  }
-  const auto n_after = setup::snapshots_after(problem, result.event.time_s).size();
-  const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
-  const bool quiet = result.event.end == motion::EventEnd::quiet;
-  const bool ended_early = result.event.end != motion::EventEnd::end_time;
-  if (ended_early && n_after > 0)
-    result.warnings.push_back(
-        fmt::format("{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
-                    problem.output.snapshot_times_s.size(), end_of_event(result)));
-  if (const double wait_s = fronts::arrest_time_s(result.event.record, options);
-      wait_s > options.arrest_time_s)
-    result.warnings.push_back(
-        fmt::format("slip spreads slowly: a tip has arrested after a wait of {:.3g} s, not of "
-                    "fronts.arrest_time_s = {:g} s",
-                    wait_s, options.arrest_time_s));
-  const auto running = n_running == 1 ? std::string("1 front") : fmt::format("{} fronts", n_running);
-  if (quiet && n_running > 0)
-    result.warnings.push_back(
-        fmt::format("{} may still have been under way when the event ended ({}); time.quiet_s = inf goes on "
-                    "to time.end_s",
-                    running, end_of_event(result)));
-  if (result.event.end == motion::EventEnd::end_time && n_running > 0)
-    result.warnings.push_back(
-        fmt::format("{} may still be under way at time.end_s = {:g} s; choose a later end to see more",
-                    running, problem.time.end_s));
-  if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
+  result.notes = advice::notes_of_case(problem, rupture, result.step_s);
+  add_notes_of_event(result, initial, options);
+}
+
+Diagnostics notes_of_sequence(const Problem& problem, std::span<const record::SequenceEvent> events) {
+  // Events that begin as soon as one place passes mu_s by little may be of that place alone.
+  constexpr double small_m = 1e-7, usual_margin = 0.01;
+  Diagnostics notes;
+  const auto n_small = std::ranges::count_if(events, [](const auto& e) { return e.max_slip_m < small_m; });
+  if (!problem.is_slow() && n_small > 0 && problem.loading.critical_margin < usual_margin)
+    notes.add(physics,
+              "{} of {} events slip by nanometres, less than 0.1 um: they begin where t/p passes mu_s by "
+              "loading.critical_margin = {:g}; a larger one, 0.01 to 0.03, leaves larger events alone",
+              n_small, events.size(), problem.loading.critical_margin);
+  return notes;
 }
 
 }  // namespace slipfront::run

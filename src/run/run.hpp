@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "advice/outlook.hpp"
+#include "base/diagnostic.hpp"
 #include "fracture/passage.hpp"
 #include "fronts/front.hpp"
 #include "motion/distributed_stepper.hpp"
@@ -44,7 +45,7 @@ struct Result {
   std::vector<fronts::Front> fronts;
   std::vector<std::vector<fracture::Passage>> passages;  ///< of each front, at its points
   advice::RuptureOutlook rupture;
-  std::vector<std::string> warnings;
+  Diagnostics notes;                 ///< see notes_of_case, and of the event
   std::optional<SharedCost> shared;  ///< of several ranks
 
   /// What cannot be made again from the case and the initial state, see analyse.
@@ -123,6 +124,9 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
                   const Status& status);
 /// run.json of a run without an event yet, or that has come to none.
 void write_status(const std::filesystem::path& dir, const Problem& problem, const Status& status);
+
+/// What to know of a sequence by its events.
+Diagnostics notes_of_sequence(const Problem& problem, std::span<const record::SequenceEvent> events);
 
 /// sequence.json, events.csv and loading.csv of a sequence so far.
 /// @param end  why it ended, in words; empty before

@@ -166,6 +166,7 @@ Finished Session::go_on(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   }
   finished.events = sequence_->events();
   finished.loading = sequence_->loading();
+  finished.notes = notes_of_sequence(problem_, finished.events);
   finished.end = sequence_->end();
   if (finished.end.empty())
     finished.end =

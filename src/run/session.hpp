@@ -52,6 +52,7 @@ struct Finished {
   /// Of a sequence.
   std::vector<record::SequenceEvent> events = {};
   std::vector<record::LoadingRow> loading = {};
+  Diagnostics notes = {};
   std::string end = {};  ///< why, in words
 };
 

@@ -208,6 +208,12 @@ Json processes_json(const SharedCost& shared) {
           {"imbalance_largest_over_mean", mean_s > 0 ? Json(largest_s / mean_s) : Json()}};
 }
 
+Json notes_json(const Diagnostics& notes) {
+  Json json = Json::array();
+  for (const auto& note : notes) json.push_back({{"kind", name(note.kind)}, {"text", note.text}});
+  return json;
+}
+
 /// What every run.json begins with.
 Json about(const Problem& problem, const Status& status) {
   Json json = {{"version", version()},     {"commit", commit()},      {"compiler", compiler()},
@@ -220,8 +226,6 @@ Json about(const Problem& problem, const Status& status) {
 
 Json run_json(const Result& result, const InitialState& initial, const Status& status) {
   const auto& event = result.event;
-  auto warnings = result.warnings;
-  if (!event.reason.empty()) warnings.push_back(event.reason);
   Json json = about(result.problem, status);
   const bool ended = status.name != "running";
   json["end"] = ended ? Json(name(event.end)) : Json();
@@ -249,7 +253,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
        {"snapshot_times_after_the_event_s",
         status.name == "running" ? Json() : Json(setup::snapshots_after(result.problem, event.time_s))},
        {"fronts", fronts_json(result.fronts)},
-       {"warnings", warnings}});
+       {"notes", notes_json(result.notes)}});
   json["friction_work"] = friction_work_json(result, initial);
   if (result.problem.is_prestressed()) json["prestress"] = prestress_json(result.problem);
   if (result.shared) json["processes"] = processes_json(*result.shared);
@@ -380,6 +384,7 @@ void write_sequence(const std::filesystem::path& dir, const Problem& problem,
   json["end"] = end.empty() ? Json() : Json(end);
   json["wave_speeds"] = speeds_json(solid::wave_speeds(problem.above().material));
   json["events"] = events.size();
+  json["notes"] = notes_json(notes_of_sequence(problem, events));
   if (!loading.empty()) {
     json["largest_friction"] = loads_json(record::strongest(loading));
     json["last"] = loads_json(loading.back());

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "base/diagnostic.hpp"
 #include "problem/problem.hpp"
 
 namespace slipfront::setup {
@@ -11,7 +11,7 @@ namespace slipfront::setup {
 /// Snapshots that a run takes.
 struct SnapshotPlan {
   std::vector<double> times_s;
-  std::vector<std::string> notes;  ///< which times are left out, and why
+  Diagnostics notes;  ///< which times are left out, and why
 };
 
 /// The times of output.snapshot_times_s and the multiples of output.snapshot_interval_s. Leaves out those

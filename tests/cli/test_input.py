@@ -111,7 +111,11 @@ def test_table_in_another_unit(program, write_case, tmp_path):
     )
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):
         assert f"note: {note}\n" in program(*command).stdout
-    assert note in run_json(tmp_path / "out")["warnings"]
+    assert {"kind": "units", "text": note} in run_json(tmp_path / "out")["notes"]
+    for command in (["validate", case], ["info", case], ["run", case, "-o", "strict"]):
+        line = refusal(program(*command, "--strict"))
+        assert note in line and "--strict refuses notes of units and resolution" in line
+    assert not (tmp_path / "strict").exists()
     (tmp_path / "table.csv").write_text(TABLE)
     assert "prestress.file" not in program("validate", case).stdout
 

@@ -4,7 +4,7 @@
 import h5py
 import numpy as np
 import pytest
-from common import COARSE, refusal, require_done, run_json, sets
+from common import COARSE, notes_of, refusal, require_done, run_json, sets
 from slipfront.opened import open_run
 from slipfront.read import PROBE_FIELDS
 
@@ -102,7 +102,7 @@ def test_times_after_the_end_are_told(program, coarse, tmp_path):
     assert "2 of 3 output.snapshot_times_s are after the end of the event" in done.stdout
     run = run_json(tmp_path / "out")
     assert run["snapshot_times_after_the_event_s"] == [0.7, 0.9]
-    assert any("2 of 3 output.snapshot_times_s" in warning for warning in run["warnings"])
+    assert any("2 of 3 output.snapshot_times_s" in warning for warning in notes_of(run))
 
 
 @pytest.mark.parametrize(

@@ -171,7 +171,7 @@ def test_blow_up_keeps_what_there_is(program, coarse, tmp_path):
     assert files_in(tmp_path / "out/unfinished") == SO_FAR | {"state"}
     run = run_json(tmp_path / "out/unfinished")
     assert (run["end"], run["status"], run["steps"]) == ("blow_up", "blew_up", step)
-    assert any("blew up" in warning for warning in run["warnings"])
+    assert "blew up" in run["reason"]
 
 
 def ended_by(process, sent):

@@ -193,7 +193,7 @@ def require_same(one, several, rounding=1e-13):
     for row, other in zip(first, second, strict=True):
         assert row == pytest.approx(other, rel=0, abs=rounding * largest)
     of_one, of_several = run_json(one), run_json(several)
-    for key in ("status", "fronts", "steps", "end", "warnings"):
+    for key in ("status", "fronts", "steps", "end", "notes"):
         assert of_one.get(key) == of_several.get(key), key
 
 

@@ -116,7 +116,10 @@ def test_facts_and_warnings_are_told(run, capsys):
     told = {"title": "my case", "status": "interrupted", "reason": "signal 15", "steps": 1234}
     rupture = {"strength_excess_S": {"min": 0.5, "median": 1.25, "max": 4}, "regime": "sub-Rayleigh"}
     rupture |= {"nucleation_length_m": 0.0125, "griffith_half_length_m": 0.02, "process_zone_m": None}
-    change_json(run / "run.json", lambda i: i.update(told, warnings=["mind this"], rupture=rupture))
+    change_json(
+        run / "run.json",
+        lambda i: i.update(told, notes=[{"kind": "physics", "text": "mind this"}], rupture=rupture),
+    )
     text = page_of(run)
     for part in (
         "my case",
@@ -132,7 +135,7 @@ def test_facts_and_warnings_are_told(run, capsys):
 
 
 def test_text_of_the_case_is_escaped(run):
-    told = dict.fromkeys(("title", "compiler", "reason"), HOSTILE) | {"warnings": [HOSTILE]}
+    told = dict.fromkeys(("title", "compiler", "reason"), HOSTILE) | {"notes": [HOSTILE]}
     change_json(run / "run.json", lambda info: info.update(told, status="failed"))
     odd = run.rename(run.parent / "<!--<script>")
     text = page_of(odd)

@@ -21,6 +21,7 @@ from common import (
     WITH_PACKAGE,
     as_from_a_terminal,
     built,
+    notes_of,
     rows_of,
     sets,
     start,
@@ -459,7 +460,7 @@ def test_one_point_that_fails_leaves_the_others(case, capsys):
     assert [line.split()[:2] for line in printed[-4:-2]] == [["0.9", "done"], ["1.5", "failed"]]
     good, bad = table_of()
     assert good["status"] == "done" and float(good["n_fronts"]) >= 1
-    notes = json.loads(Path("out", good["folder"], "run.json").read_text())["warnings"]
+    notes = notes_of(json.loads(Path("out", good["folder"], "run.json").read_text()))
     assert notes and good["message"] == "; ".join(notes)
     assert draw_figures(["out"]) == 2 and "slipfront.sweep.maps PICTURE DIR" in capsys.readouterr().err
     assert bad["status"] == "failed" and bad["n_fronts"] == "" and "energy" in bad["message"]
@@ -717,7 +718,7 @@ def test_a_sweep_of_sequences_has_the_numbers_of_their_events(case, capsys):
         ):
             at = data[name].sel({key: float(row[c.attrs["key"]]) for key, c in data.coords.items()})
             assert at == value and row[name] == f"{float(value):.12g}"
-        notes = [run.info["warnings"] for run in sequence.runs]
+        notes = [[note.text for note in run.notes] for run in sequence.runs]
         assert row["message"] in notes[0] and all(row["message"] in other for other in notes)
     assert "n_fronts" not in data and "end_reason" not in table_of()[0]
     # Friction at rest is the higher the higher mu_k is.

@@ -149,7 +149,7 @@ TEST(FrictionAlongX, WarningsAndTriggersGoByEachNode) {
   auto c = rupture("x_m,mu_s\n0,0.4\n0.05,0.6\n0.2,0.6\n", input::BetweenRows::stepwise);
   c.event = EventKind::none;
   c.time.end_s = 1e-6;
-  EXPECT_THAT(run_case(c).warnings,
+  EXPECT_THAT(test::texts_of(run_case(c).notes),
               ::testing::Contains("t is beyond mu_s p at 25 of 101 nodes inside: they slip at once"));
   c.event = EventKind::right;
   c.trigger.form = interface::TriggerForm::raised;

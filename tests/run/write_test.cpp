@@ -137,7 +137,7 @@ TEST_F(WrittenRun, ResolvedCaseReadsBackToTheSameCase) {
 TEST_F(WrittenRun, SummaryTellsTheRun) {
   const json run = json::parse(test::read_file(s.folder / "run.json"));
   for (const char* key : {"commit", "host", "stable_dt_s", "interface_dt_s", "wall_s", "node_updates_per_s",
-                          "energy_at_start", "energy_at_end", "warnings"})
+                          "energy_at_start", "energy_at_end", "notes"})
     EXPECT_TRUE(run.contains(key)) << key;
   const std::pair<const char*, json> values[] = {
       {"/version", version()},
@@ -180,8 +180,7 @@ TEST_F(WrittenRun, SummaryTellsHowTheRunEnded) {
     write(folder.path(), result, s.initial);
     const json run = json::parse(test::read_file(folder / "run.json"));
     EXPECT_EQ(run["end"], word);
-    const bool told = !run["warnings"].empty() && run["warnings"].back() == "blew up at step 7";
-    EXPECT_EQ(told, end == motion::EventEnd::blow_up);
+    EXPECT_EQ(run["end_reason"] == "blew up at step 7", end == motion::EventEnd::blow_up);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/diagnostic.hpp"
 #include "input/friction_table.hpp"
 #include "input/schema.hpp"
 #include "interface/friction/velocity_weakening.hpp"
@@ -74,6 +75,12 @@ inline void set_table(input::Case& config, const std::string& text) {
   write_file(file, text);
   config.friction_along_x.file = file.string();
   config.friction_along_x.table = input::read_friction_table(file, config.friction);
+}
+
+inline std::vector<std::string> texts_of(const Diagnostics& notes) {
+  std::vector<std::string> texts;
+  for (const auto& note : notes) texts.push_back(note.text);
+  return texts;
 }
 
 inline bool go_on(std::int64_t, std::int64_t) {

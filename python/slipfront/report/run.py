@@ -103,8 +103,7 @@ def facts(run: OpenRun) -> str:
 
 
 def warnings_of(run: OpenRun) -> str:
-    told = run.info.get("warnings", [])
-    return warnings_list(run.remarks, "mark") + warnings_list(told if isinstance(told, list) else [])
+    return warnings_list(run.remarks, "mark") + warnings_list([note.text for note in run.notes])
 
 
 def thinning(history: ThinHistory) -> str:

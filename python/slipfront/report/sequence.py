@@ -78,9 +78,6 @@ def state_words(place: Place, key: str) -> str:
     return f"{ratio:.4f}, {words(phase)}: {shear} over {normal}, at {time} and a displacement of {moved}"
 
 
-LEAST_SLIP_M, USUAL_MARGIN = 1e-7, 0.01  # events of less slip are of some nodes where the margin is less
-
-
 def outcome(sequence: OpenSequence) -> str:
     """How many events, and how far they slip, as a piece of HTML."""
     events = sequence.events
@@ -98,19 +95,6 @@ def outcome(sequence: OpenSequence) -> str:
         f"fronts of the longest at {speed_words(speed, sequence.info)}" if np.isfinite(speed) else "",
     ]
     return ", ".join(part for part in parts if part) + "."
-
-
-def small_events(sequence: OpenSequence) -> list[str]:
-    """What to do where events of a law that sticks slip by nanometres."""
-    n_small = int((sequence.events["max_slip_m"] < LEAST_SLIP_M).sum())
-    margin = sequence.entry("loading", "critical_margin")
-    if n_small == 0 or len(sequence.slow) > 0 or not is_number(margin) or margin >= USUAL_MARGIN:
-        return []
-    return [
-        f"{n_small} of {sequence.events.sizes['event']} events slip by nanometres: they begin where t/p "
-        f"passes mu_s by loading.critical_margin = {margin:g}; a larger one, 0.01 to 0.03, leaves larger "
-        "events alone"
-    ]
 
 
 def facts(sequence: OpenSequence) -> str:
@@ -132,7 +116,7 @@ def facts(sequence: OpenSequence) -> str:
 
 
 def setup_section(sequence: OpenSequence, remarks: list[str]) -> str:
-    told = warnings_list(remarks, "mark") + warnings_list(small_events(sequence))
+    told = warnings_list(remarks, "mark") + warnings_list([note.text for note in sequence.notes])
     if len(sequence.runs) == 0:
         known = [told, sketch(sequence), facts_table(setup.rows_of_case(sequence))]
         return section("setup", "Set-up", *known, "<p>No event is complete.</p>")

@@ -15,7 +15,7 @@ import numpy as np
 from slipfront.files import DataError, is_number, number, read_json_table
 from slipfront.folder import RUN, SEQUENCE, result_file
 from slipfront.opened import OpenRun, open_run
-from slipfront.read import SPEED_KINDS, Front, is_sequence, median, ratio, read_columns
+from slipfront.read import SPEED_KINDS, Front, is_sequence, median, notes_of, ratio, read_columns
 
 Cell = float | int | str
 Interval = tuple[float, float]
@@ -311,7 +311,7 @@ def teller(place: Path) -> Path:
 def notes_on(place: Path) -> list[str]:
     """Those on a run; of a sequence those on each of its events, which are of the case."""
     told = [place / RUN] if not is_sequence(place) else sorted(place.glob(f"events/*/{RUN}"))
-    first, *others = [read_json_table(file).get("warnings", []) for file in told] or [[]]
+    first, *others = [[note.text for note in notes_of(read_json_table(file))] for file in told] or [[]]
     return [note for note in first if all(note in notes for notes in others)]
 
 
