@@ -173,16 +173,16 @@ def test_a_machine_too_stiff_for_events_is_told(program, write_case):
     modulus_Pa = 2.6e9 / (2 * 1.37)
     stiff_m = (0.02 - 0.01) * 5e6 / (modulus_Pa / 0.05)
     note = "block and machine have 1.25 times the critical stiffness (b - a) p/d_c"
-    assert note in notes_of(program, case, f"friction.d_c_m={1.25 * stiff_m}")
-    assert "critical stiffness" not in notes_of(program, case, f"friction.d_c_m={0.8 * stiff_m}")
+    assert note in told_notes(program, case, f"friction.d_c_m={1.25 * stiff_m}")
+    assert "critical stiffness" not in told_notes(program, case, f"friction.d_c_m={0.8 * stiff_m}")
     yielding = (f"friction.d_c_m={1.25 * stiff_m}", "loading.shear_stiffness_Pa_per_m=1e10")
-    assert "critical stiffness" not in notes_of(program, case, *yielding)
+    assert "critical stiffness" not in told_notes(program, case, *yielding)
 
 
 CASES = Path(__file__).parent / "cases"
 
 
-def notes_of(program, file, *settings):
+def told_notes(program, file, *settings):
     notes = []
     for command in ("info", "validate"):
         printed = require_done(program(command, file, *sets(*settings))).stdout
@@ -194,9 +194,9 @@ def notes_of(program, file, *settings):
 def test_the_base_is_damped_as_the_plate_unless_it_is_said(program, write_case):
     case = CASES / "equal_bodies_unequal_damping.toml"
     note = "of one material, but material.stiffness_damping_s is 3e-07 and base.stiffness_damping_s 1e-07"
-    assert note in notes_of(program, case)
+    assert note in told_notes(program, case)
     same = write_case("".join(line for line in case.open() if "stiffness_damping_s" not in line))
-    assert "of one material" not in notes_of(program, same)
+    assert "of one material" not in told_notes(program, same)
 
 
 def test_what_damping_and_mesh_decide_of_supershear(program):
@@ -206,21 +206,21 @@ def test_what_damping_and_mesh_decide_of_supershear(program):
     mesh = "the place where fronts pass c_S, where S < 1.77, needs 16"
     for beta, is_noted in (("0", False), ("1e-7", True), ("3e-7", True)):
         settings = [key.format(beta) for key in both]
-        notes = notes_of(program, case, *settings)
+        notes = told_notes(program, case, *settings)
         assert (damping in notes) == is_noted
         assert mesh in notes
-        assert mesh not in notes_of(program, case, *settings, "friction.d_c_m=12e-6")
+        assert mesh not in told_notes(program, case, *settings, "friction.d_c_m=12e-6")
 
 
 def test_undamped_sliding_that_changes_the_pressure_needs_damping(program):
     case = CASES / "undamped_coupled.toml"
-    advised = re.search(r"(material.stiffness_damping_s) = (\S+) damps them", notes_of(program, case))
+    advised = re.search(r"(material.stiffness_damping_s) = (\S+) damps them", told_notes(program, case))
     # Rounded up to three digits: 0.1 h/c_S.
     assert advised and 0.05e-3 / 889.2 <= float(advised[2]) < 1.01 * 0.05e-3 / 889.1
-    assert "damps them" not in notes_of(program, case, "=".join(advised.groups()))
+    assert "damps them" not in told_notes(program, case, "=".join(advised.groups()))
     # Where the response is delayed there is nothing to damp.
     delayed = ("friction.regularisation=pressure", "friction.relaxation_time_s=1e-6")
-    assert "damps them" not in notes_of(program, case, *delayed)
+    assert "damps them" not in told_notes(program, case, *delayed)
 
 
 def test_advice_on_damping_satisfies_both_bounds(program):
@@ -230,7 +230,7 @@ def test_advice_on_damping_satisfies_both_bounds(program):
         changes = (*base.split(), "base.height_m=0.12", f"plate.element_size_m={size}")
         case = CASES / "undamped_coupled.toml"
         damped = (*changes, "material.stiffness_damping_s=1.13e-7")  # 0.1 h/c_S at 1 mm
-        notes = notes_of(program, case, *damped)
+        notes = told_notes(program, case, *damped)
         assert f"choose a smaller {remedy}" in notes and "damps them" not in notes
         length = re.search(r"beta_R c_L +(\S+ m)", program("info", case, *sets(*damped)).stdout)[1]
         assert f"beta_R c_L = {length} is" in notes
@@ -258,7 +258,7 @@ def test_rows_of_a_stepwise_table_that_end_at_a_node_are_named(program, write_ca
     (tmp_path / "mu.csv").write_text("x_m,mu_s\n0,0.7\n0.1000001,0.8\n0.152,0.7\n0.2,0.7\n")
     case = write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))
     table = ("friction.file=mu.csv", "friction.between_rows=stepwise")
-    notes = notes_of(program, case, *table)
+    notes = told_notes(program, case, *table)
     assert "the row at x = 0.1000001 m counts for the node at 0.1 m" in notes
     assert notes.count("counts for the node") == 1
 
