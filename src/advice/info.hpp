@@ -54,7 +54,7 @@ struct Info {
   double well_posedness_x_m = nan;
   std::optional<Shared> shared;
   std::optional<setup::ResolvedLoads> loads;  ///< see loaded_state
-  std::vector<std::string> notes;             ///< see notes_of_case
+  Diagnostics notes;                          ///< see notes_of_case
 };
 
 /// What a run takes. Of a case that root_has_interface_only only columns of one rank are made.
