@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/error.hpp"
+#include "problem/contact.hpp"
 #include "record/sequence.hpp"
+#include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::run {
@@ -32,10 +36,10 @@ bool TurnFinder::see(double value) {
   return true;
 }
 
-Creep::Creep(const motion::QuasiDynamicSlip& slow, const std::vector<double>& tributary_m)
+CreepRows::CreepRows(const motion::QuasiDynamicSlip& slow, const std::vector<double>& tributary_m)
     : turns_(friction(slow.state(), tributary_m), 0.01 * std::ranges::min(slow.friction().a())) {}
 
-bool Creep::is_row_due(const motion::QuasiDynamicSlip& slow) const {
+bool CreepRows::is_row_due(const motion::QuasiDynamicSlip& slow) const {
   if (slow.n_steps() % record::steps_per_slow_row != 0) return false;
   if (n_rows_ < record::all_slow_rows) return true;
   // States have changed by this share of an e-fold slip rate; rates have doubled or halved, of nodes that are
@@ -54,7 +58,7 @@ bool Creep::is_row_due(const motion::QuasiDynamicSlip& slow) const {
   return false;
 }
 
-bool Creep::takes_row(const motion::QuasiDynamicState& state) {
+bool CreepRows::takes_row(const motion::QuasiDynamicState& state) {
   if (n_rows_ > 0 && last_row_s_ == state.time_s) return false;  // the end is such a step, too
   last_row_s_ = state.time_s;
   row_V_m_per_s_ = state.slip_rate_m_per_s;
@@ -63,8 +67,8 @@ bool Creep::takes_row(const motion::QuasiDynamicState& state) {
   return true;
 }
 
-bool Creep::is_loading_row_due(const motion::QuasiDynamicState& state,
-                               const std::vector<double>& tributary_m) {
+bool CreepRows::is_loading_row_due(const motion::QuasiDynamicState& state,
+                                   const std::vector<double>& tributary_m) {
   constexpr double factor = 2;
   const double rate = state.fastest_m_per_s();
   const bool has_turned = turns_.see(friction(state, tributary_m));
@@ -74,7 +78,7 @@ bool Creep::is_loading_row_due(const motion::QuasiDynamicState& state,
   return true;
 }
 
-bool Creep::is_steady(const motion::QuasiDynamicSlip& slow) {
+bool CreepRows::is_steady(const motion::QuasiDynamicSlip& slow) {
   constexpr double many = 10, least_change = 1e-3;  // of d_c, and of that by which the rate changes e-fold
   const auto& state = slow.state();
   bool has_slipped = !steady_u_x_m_.empty();
@@ -91,6 +95,124 @@ bool Creep::is_steady(const motion::QuasiDynamicSlip& slow) {
   steady_u_x_m_ = state.u_x_m;
   steady_states_ = state.law_states;
   return false;
+}
+
+/// Friction at the nodes of a sample between events.
+static interface::QuasiDynamicFriction friction_of(const Sample& sample) {
+  return {contact_model(sample.problem, mesh::interface_x_m(sample.initial.mesh)),
+          sample.initial.tributary_m.size(),
+          stability::radiation_damping_Pa_s_per_m(materials_of(sample.problem))};
+}
+
+Creep::Creep(Sample& sample)
+    : sample_(sample),
+      slow_(sample.statics, friction_of(sample), sample.initial.tributary_m,
+            sample.problem.shear_speed_m_per_s) {
+  sample_.rest = {0,
+                  0,
+                  0,
+                  sample.at_rest.contact,
+                  relative(sample.initial, sample.at_rest).x_m,
+                  slow_.friction().initial_states(),
+                  {}};
+}
+
+statics::Equilibrium Creep::slid_to(std::vector<double> u_x_per_shear) const {
+  const auto& state = slow_.state();
+  return sample_.statics.slid_to(state.contact, state.u_x_m, std::move(u_x_per_shear), state.shear_m);
+}
+
+record::LoadingRow Creep::loading_row(record::LoadingPhase phase, const record::LoadingRow& from) const {
+  const auto& state = slow_.state();
+  const auto& works = slow_.works();
+  const auto equilibrium = slid_to({});
+  auto now = sample_.row(phase, state.time_s, state.shear_m + sample_.rest.moved_m, equilibrium.tractions);
+  now.energies = from.energies;
+  now.energies.time_s = now.time_s;
+  now.energies.kinetic = 0;
+  sample_.add_state(equilibrium, now);
+  now.energies.far_edge_work += works.of_load_J_per_m;
+  now.energies.friction_work += works.of_friction_J_per_m;
+  now.energies.contact_work += works.of_contact_J_per_m;
+  now.wave_loss_J_per_m = from.wave_loss_J_per_m + works.radiated_J_per_m;
+  now.fastest_slip_rate_m_per_s = state.fastest_m_per_s();
+  return now;
+}
+
+void Creep::begin() {
+  slow_.start(sample_.rest.time_s, sample_.rest.shear_m, sample_.rest.contact, sample_.rest.u_x_m,
+              sample_.rest.law_states);
+  const auto& state = slow_.state();
+  if (sample_.n_events == 0 && state.fastest_m_per_s() >= inertia_slip_rate_m_per_s(sample_.problem))
+    throw UserError(
+        "normal loading alone lets the interface slip at {:.3g} m/s, where an event begins; choose a larger "
+        "{} or a smaller {}",
+        state.fastest_m_per_s(), Key("friction.theta_i_s"), Key("friction.V_i_m_per_s"));
+  rows_.emplace(slow_, sample_.initial.tributary_m);
+}
+
+bool Creep::slip_to_next(const Rows& rows) {
+  if (!rows_) begin();
+  const auto from = sample_.loading[sample_.n_rows_at_rest - 1];
+  const auto& state = slow_.state();
+  const auto u_tilted = relative(sample_.initial, sample_.statics.tilted());
+  const auto give_row = [&] {
+    if (!rows_->takes_row(state)) return;
+    record::History row{{state.time_s},  sample_.at_rest.tractions.x_m,
+                        state.u_x_m,     state.slip_rate_m_per_s,
+                        state.t_Pa,      state.p_Pa,
+                        state.law_states};
+    for (std::size_t k = 0; k < row.slip_m.size(); ++k)
+      row.slip_m[k] += sample_.rest.moved_m - u_tilted.x_m[k];
+    rows(row);
+  };
+  if (rows_->n_rows() == 0) give_row();
+  const auto after_step = [&] {
+    sample_.require_stands(state.time_s, state.shear_m + sample_.rest.moved_m, state.t_Pa, state.p_Pa);
+    if (std::isinf(sample_.path.end_s()) && rows_->is_steady(slow_))
+      throw UserError(
+          "{:.6g} s after normal loading the interface slips steadily, at {:.3g} m/s: no event comes; give "
+          "{}, or a softer machine ({})",
+          state.time_s, state.fastest_m_per_s(), Key("sequence.end_s"),
+          Key("loading.shear_stiffness_Pa_per_m"));
+    if (rows_->is_row_due(slow_)) give_row();
+    if (rows_->is_loading_row_due(state, sample_.initial.tributary_m))
+      sample_.loading.push_back(loading_row(record::LoadingPhase::creep, from));
+    if (!sample_.monitor(0, 0))
+      throw Interrupted(fmt::format("interrupted in slow slip, {:.6g} s after normal loading", state.time_s));
+    return true;
+  };
+  bool begins = false;
+  while (!begins && state.time_s < sample_.path.end_s()) {
+    slow_.set_edge_speed(sample_.path.speed_m_per_s(state.time_s, state.shear_m + sample_.rest.moved_m));
+    begins = slow_.slip_until(sample_.path.part_end_s(state.time_s),
+                              inertia_slip_rate_m_per_s(sample_.problem), after_step);
+  }
+  give_row();
+  rows_.reset();
+  sample_.loading.push_back(
+      loading_row(begins ? record::LoadingPhase::event_begins : record::LoadingPhase::loaded, from));
+  if (!begins) return false;
+  std::vector<double> per_shear;
+  for (const double V : state.slip_rate_m_per_s) per_shear.push_back(V / sample_.problem.shear_speed_m_per_s);
+  sample_.initial.supercritical = slid_to(std::move(per_shear));
+  sample_.initial.supercritical.shear_m += sample_.rest.moved_m;
+  for (auto& contact : sample_.initial.supercritical.contact)
+    if (contact == statics::Contact::slip) contact = statics::Contact::stick;
+  sample_.initial.subcritical = sample_.initial.supercritical;
+  sample_.initial.critical_shear_m = sample_.initial.subcritical.shear_m;
+  sample_.initial.law_states = state.law_states;
+  if (setup::has_forces(sample_.problem))
+    sample_.initial.loads =
+        setup::resolved_loads(sample_.problem, sample_.statics, sample_.initial.subcritical,
+                              sample_.initial.subcritical, sample_.initial.tributary_m);
+  return true;
+}
+
+void Creep::serialize(StateArchive& archive) {
+  archive(slow_);
+  if (archive.is_loading()) rows_.emplace(slow_, sample_.initial.tributary_m);
+  archive(*rows_);
 }
 
 }  // namespace slipfront::run

@@ -2,10 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
+#include "base/state.hpp"
 #include "interface/friction.hpp"
 #include "motion/quasi_dynamic.hpp"
+#include "record/record.hpp"
+#include "run/sample.hpp"
 
 namespace slipfront::run {
 
@@ -28,11 +33,11 @@ class TurnFinder {
 };
 
 /// What is known of slow slip under way: which of its steps get a row, and whether it is steady.
-class Creep {
+class CreepRows {
  public:
   /// @param slow         started
   /// @param tributary_m  [interface nodes]
-  Creep(const motion::QuasiDynamicSlip& slow, const std::vector<double>& tributary_m);
+  CreepRows(const motion::QuasiDynamicSlip& slow, const std::vector<double>& tributary_m);
 
   /// Rows of the interface so far.
   std::size_t n_rows() const { return n_rows_; }
@@ -63,6 +68,40 @@ class Creep {
   interface::LawStates row_states_;
   std::vector<double> steady_u_x_m_;  ///< when the states changed last
   interface::LawStates steady_states_;
+};
+
+/// The phase in which the interface slips slowly, under a law that never sticks, by quasi-dynamic slip. It
+/// ends in the state in which the next event begins: where a node slips at
+/// sequence.inertia_slip_rate_m_per_s.
+class Creep {
+ public:
+  /// @param sample  has to stay where it is; its rest state becomes that after normal loading
+  explicit Creep(Sample& sample);
+
+  /// Takes rows of slow slip, their time since normal loading.
+  using Rows = std::function<void(const record::History& row)>;
+
+  /// Goes on to the next event; the monitor is asked after each step.
+  /// @return false where that is beyond sequence.end_s, to which the sample is loaded then
+  /// @throws UserError where no event comes; Interrupted
+  bool slip_to_next(const Rows& rows);
+
+  bool is_under_way() const { return rows_.has_value(); }
+  /// Rows so far of slow slip under way.
+  std::size_t n_rows() const { return rows_->n_rows(); }
+  /// Slow slip under way.
+  void serialize(StateArchive& archive);
+
+ private:
+  void begin();
+  /// @param u_x_per_shear  see statics::Statics::slid_to
+  statics::Equilibrium slid_to(std::vector<double> u_x_per_shear) const;
+  /// The row of the loading after another one from which slow slip has begun.
+  record::LoadingRow loading_row(record::LoadingPhase phase, const record::LoadingRow& from) const;
+
+  Sample& sample_;
+  motion::QuasiDynamicSlip slow_;
+  std::optional<CreepRows> rows_;  ///< under way
 };
 
 }  // namespace slipfront::run
