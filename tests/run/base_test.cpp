@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "advice/info.hpp"
 #include "base/error.hpp"
 #include "cases.hpp"
 #include "input/schema.hpp"

@@ -15,12 +15,14 @@
 #include <malloc.h>
 #endif
 
+#include "advice/info.hpp"
 #include "base/error.hpp"
 #include "cases.hpp"
 #include "fronts/measures.hpp"
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "motion/trigger_zone.hpp"
+#include "setup/event.hpp"
 
 namespace slipfront::run {
 namespace {

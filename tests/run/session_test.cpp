@@ -290,7 +290,6 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   const std::pair<const char*, std::function<void(InitialState&)>> changes[] = {
       {"a plate", [](InitialState& s) { s.tributary_m.pop_back(); }},
       {"a plate", [](InitialState& s) { ++s.n_nodes; }},
-      {"a plate", [](InitialState& s) { s.mu_s.push_back(1); }},
       {"an initial state", [](InitialState& s) { s.subcritical.contact.pop_back(); }},
       {"an initial state", [](InitialState& s) { s.subcritical.contact[1] = statics::Contact{7}; }},
       {"an initial state", [](InitialState& s) { s.subcritical.tractions.x_m[1] *= 1.01; }},

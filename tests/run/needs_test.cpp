@@ -4,10 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "advice/info.hpp"
+#include "cases.hpp"
 #include "interface/friction/rate_and_state.hpp"
-#include "setup/cases.hpp"
 
-namespace slipfront::advice {
+namespace slipfront::run {
 namespace {
 
 using problem::make_problem;
@@ -17,8 +18,8 @@ using test::go_on;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-Needs needs_of(const input::Case& config) {
-  return needs(make_problem(config), estimated_size(make_problem(config)));
+advice::Needs needs_of(const input::Case& config) {
+  return advice::needs(make_problem(config), advice::estimated_size(make_problem(config)));
 }
 
 TEST(Needs, DiskIsWhatTheFilesTake) {
@@ -34,7 +35,7 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
   const auto size_of = [&](const char* name) {
     return static_cast<double>(std::filesystem::file_size(folder / name));
   };
-  const Needs n = needs_of(config);
+  const advice::Needs n = needs_of(config);
   EXPECT_NEAR(n.history_bytes / size_of("interface.h5"), 1, 0.3);
   EXPECT_NEAR(n.snapshot_bytes / size_of("fields.vtkhdf"), 1, 0.3);
   EXPECT_NEAR(n.energy_bytes / size_of("energy.csv"), 1, 0.3);
@@ -42,7 +43,7 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
 
 TEST(Needs, EstimatesAgreeWithTheMesh) {
   auto config = coarse_case(interface::EventKind::spontaneous, 1e-3);
-  const auto exact = info(make_problem(config)).needs, estimated = needs_of(config);
+  const auto exact = advice::info(make_problem(config)).needs, estimated = needs_of(config);
   EXPECT_NEAR(estimated.memory_bytes() / exact.memory_bytes(), 1, 0.3);
   EXPECT_NEAR(static_cast<double>(estimated.steps) / static_cast<double>(exact.steps), 1, 0.3);
   EXPECT_NEAR(estimated.history_bytes / exact.history_bytes, 1, 0.3);
@@ -53,12 +54,13 @@ TEST(Needs, EstimatesAgreeWithTheMesh) {
 
 TEST(Needs, OfOneAmongManyIsItsPart) {
   const auto config = coarse_case(interface::EventKind::left, 0.5e-3);
-  const auto size = estimated_size(make_problem(config));
-  const auto of = [&](const Holder& holder) {
-    return needs(make_problem(config), size, holder).memory_bytes();
+  const auto size = advice::estimated_size(make_problem(config));
+  const auto of = [&](const advice::Holder& holder) {
+    return advice::needs(make_problem(config), size, holder).memory_bytes();
   };
   EXPECT_LT(of({4, 1, false}), 0.5 * of({}));
-  EXPECT_GT(of({4, 1, true}), needs(make_problem(config), size).statics_bytes);  // which it solves alone
+  EXPECT_GT(of({4, 1, true}),
+            advice::needs(make_problem(config), size).statics_bytes);  // which it solves alone
   EXPECT_GT(of({4, 4, true}), of({4, 1, true}));
 }
 
@@ -71,12 +73,13 @@ TEST(Needs, CountTheStateOfAFrictionLaw) {
 
 TEST(Info, OfRanksIsOfTheirSubdomains) {
   const auto config = coarse_case(interface::EventKind::left, 1e-3);
-  const auto one = *info(make_problem(config), 1).shared, three = *info(make_problem(config), 3).shared;
+  const auto one = *advice::info(make_problem(config), 1).shared,
+             three = *advice::info(make_problem(config), 3).shared;
   EXPECT_EQ(three.partition.n_subdomains(), 3);
   EXPECT_LT(three.memory_bytes, three.root_memory_bytes);
   EXPECT_LT(three.efficiency, one.efficiency);
   EXPECT_GT(three.bytes_per_step, 0);
-  EXPECT_THROW(info(make_problem(config), 1000), UserError);
+  EXPECT_THROW(advice::info(make_problem(config), 1000), UserError);
 }
 
 TEST(Needs, CountTheStepsOfTheRamp) {
@@ -84,7 +87,7 @@ TEST(Needs, CountTheStepsOfTheRamp) {
   EXPECT_EQ(needs_of(config).ramp_steps, 0);
   config.loading.method = statics::LoadingMethod::ramp;
   config.loading.shear_speed_m_per_s = 5e-3;
-  const auto predicted = static_cast<double>(info(make_problem(config)).needs.ramp_steps);
+  const auto predicted = static_cast<double>(advice::info(make_problem(config)).needs.ramp_steps);
   EXPECT_NEAR(
       predicted / static_cast<double>(setup::make_initial_state(make_problem(config), go_on).ramp->steps), 1,
       0.3);
@@ -98,7 +101,7 @@ TEST(Needs, RefuseStepsBeyondCounting) {
   config.loading.method = statics::LoadingMethod::ramp;
   for (const double speed : {1e-20, 1e-300}) {
     config.loading.shear_speed_m_per_s = speed;
-    EXPECT_THAT(error_of([&] { info(make_problem(config)); }),
+    EXPECT_THAT(error_of([&] { advice::info(make_problem(config)); }),
                 HasSubstr("loading.shear_speed_m_per_s = 1e-"));
     EXPECT_THAT(error_of([&] { setup::make_initial_state(make_problem(config), go_on); }),
                 HasSubstr("loading.shear_speed_m_per_s"));
@@ -108,7 +111,7 @@ TEST(Needs, RefuseStepsBeyondCounting) {
 TEST(RequireFit, NamesWhatToChange) {
   const test::TemporaryFolder folder;
   const auto message = [&](const input::Case& config) {
-    return error_of([&] { require_fit(make_problem(config), folder / "to be/made"); });
+    return error_of([&] { advice::require_fit(make_problem(config), folder / "to be/made"); });
   };
   auto config = coarse_case();
   EXPECT_EQ(message(config), test::accepted);
@@ -130,4 +133,4 @@ TEST(RequireFit, NamesWhatToChange) {
 }
 
 }  // namespace
-}  // namespace slipfront::advice
+}  // namespace slipfront::run

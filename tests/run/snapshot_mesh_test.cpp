@@ -5,12 +5,12 @@
 
 #include <random>
 
+#include "cases.hpp"
 #include "mesh/plate.hpp"
-#include "setup/cases.hpp"
 #include "support/files.hpp"
 #include "support/results.hpp"
 
-namespace slipfront::setup {
+namespace slipfront::run {
 namespace {
 
 using problem::make_problem;
@@ -35,9 +35,9 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
   config.base.plate.height_m = 0.4;
   config.base.plate.sides = GetParam().sides;
   ASSERT_TRUE(has_equal_elements(make_problem(config)));
-  const auto meshes = check(make_problem(config));
-  const auto whole = whole_snapshot_mesh(meshes);
-  const auto rows = snapshot_mesh_in_rows(make_problem(config));
+  const auto meshes = setup::check(make_problem(config));
+  const auto whole = setup::whole_snapshot_mesh(meshes);
+  const auto rows = setup::snapshot_mesh_in_rows(make_problem(config));
   int n_slabs = 0;
   rows.slabs.for_some(0, rows.slabs.n_slabs, [&](const mesh::Slab&) { ++n_slabs; });
   EXPECT_EQ(n_slabs, 4);
@@ -48,7 +48,7 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
   for (auto* field : {&snapshot.u_m, &snapshot.v_m_per_s})
     for (auto* component : {&field->x, &field->y})
       for (double& value : *component) value = some(random);
-  const auto written = [&](const SnapshotMesh& mesh) {
+  const auto written = [&](const setup::SnapshotMesh& mesh) {
     const test::TemporaryFolder folder;
     test::write_snapshots(folder.path(), mesh.slabs, std::span(&snapshot, 1),
                           snapshot_contents(make_problem(config), mesh));
@@ -63,4 +63,4 @@ INSTANTIATE_TEST_SUITE_P(, SnapshotMeshes,
                          [](const auto& edges) { return std::string(edges.param.name); });
 
 }  // namespace
-}  // namespace slipfront::setup
+}  // namespace slipfront::run

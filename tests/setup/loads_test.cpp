@@ -10,7 +10,7 @@
 
 #include "setup/cases.hpp"
 
-namespace slipfront::advice {
+namespace slipfront::setup {
 namespace {
 
 using interface::EventKind;
@@ -115,7 +115,7 @@ TEST(Loads, TheInterfaceBearsTheForcesThatAreAsked) {
   for (const auto& row : loads_of_rows) {
     SCOPED_TRACE(row.name);
     const auto c = case_of(row);
-    const auto initial = setup::make_initial_state(make_problem(c), go_on);
+    const auto initial = make_initial_state(make_problem(c), go_on);
     ASSERT_TRUE(initial.loads);
     const auto& loads = *initial.loads;
     const auto before = compressed(c, initial);
@@ -143,21 +143,21 @@ TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
   for (const auto& row : loads_of_rows) {
     SCOPED_TRACE(row.name);
     const auto c = case_of(row);
-    const auto expected = setup::make_initial_state(make_problem(c), go_on);
+    const auto expected = make_initial_state(make_problem(c), go_on);
     const auto& loads = *expected.loads;
     auto forces = c;
     forces.loading.mean_pressure_Pa = forces.loading.shear_over_critical = {};
     forces.loading.normal_force_N_per_m = loads.normal_force_N_per_m;
     forces.loading.shear_force_N_per_m = loads.shear_force_N_per_m;
-    expect_same_state(setup::make_initial_state(make_problem(forces), go_on).subcritical,
-                      expected.subcritical, row.tolerance);
+    expect_same_state(make_initial_state(make_problem(forces), go_on).subcritical, expected.subcritical,
+                      row.tolerance);
     // By the displacements that were found.
     auto displaced = forces;
     displaced.loading.normal_force_N_per_m = {};
     displaced.loading.tilt_left_m = loads.tilt_left_m;
     displaced.loading.tilt_right_m = loads.tilt_right_m;
     expect_same_state(compressed(displaced, expected), compressed(c, expected), row.tolerance);
-    const auto by_displacements = setup::make_initial_state(make_problem(displaced), go_on);
+    const auto by_displacements = make_initial_state(make_problem(displaced), go_on);
     expect_same_state(by_displacements.subcritical, expected.subcritical, row.tolerance);
     EXPECT_NEAR(by_displacements.critical_shear_m, expected.critical_shear_m,
                 row.tolerance * expected.critical_shear_m);
@@ -169,9 +169,9 @@ TEST(Loads, SolversFindTheSame) {
     if (row.tolerance < 1e-8) continue;  // those of a factorisation
     SCOPED_TRACE(row.name);
     auto c = case_of(row);
-    const auto iterative = setup::make_initial_state(make_problem(c), go_on);
+    const auto iterative = make_initial_state(make_problem(c), go_on);
     c.loading.solver = statics::StaticSolver::direct;
-    expect_same_state(iterative.subcritical, setup::make_initial_state(make_problem(c), go_on).subcritical,
+    expect_same_state(iterative.subcritical, make_initial_state(make_problem(c), go_on).subcritical,
                       row.tolerance);
   }
 }
@@ -179,12 +179,12 @@ TEST(Loads, SolversFindTheSame) {
 TEST(Loads, TheWholeCriticalOneIsThatOfTheMargin) {
   auto c = case_of(loads_of_rows[2]);
   c.loading.shear_over_critical = 1;
-  const auto whole = setup::make_initial_state(make_problem(c), go_on);
+  const auto whole = make_initial_state(make_problem(c), go_on);
   EXPECT_NEAR(whole.subcritical.shear_m, whole.critical_shear_m, 1e-9 * whole.critical_shear_m);
   EXPECT_NEAR(whole.subcritical.peak_ratio, test::law(c).mu_s, 1e-9);
   // t/p at the peak grows with the shear up to it.
   c.loading.shear_over_critical = {};
-  const auto below = setup::make_initial_state(make_problem(c), go_on);
+  const auto below = make_initial_state(make_problem(c), go_on);
   EXPECT_EQ(below.critical_shear_m, whole.critical_shear_m);
   EXPECT_NEAR(below.subcritical.peak_ratio, (1 - c.loading.critical_margin) * test::law(c).mu_s, 1e-9);
   EXPECT_LT(below.subcritical.shear_m, whole.subcritical.shear_m);
@@ -194,7 +194,7 @@ TEST(Loads, LevelCompressionOfAColumnIsUniform) {
   // Without Poisson's effect the stress is uniform, p = u E/H.
   auto c = case_of(loads_of_rows[0]);
   c.material.poissons_ratio = 0;
-  const auto initial = setup::make_initial_state(make_problem(c), go_on);
+  const auto initial = make_initial_state(make_problem(c), go_on);
   const double u_m = p_Pa * c.plate.height_m / c.material.youngs_modulus_Pa;
   EXPECT_NEAR(initial.loads->tilt_left_m, u_m, 1e-12 * u_m);
   EXPECT_NEAR(initial.loads->tilt_right_m, u_m, 1e-12 * u_m);
@@ -206,7 +206,7 @@ TEST(Loads, WhatNoShearGivesIsRefused) {
     c.loading.shear_over_critical = {};
     c.loading.shear_force_N_per_m = shear_N_per_m;
     c.loading.tilt_difference_m = tilt_difference_m;
-    return error_of([&] { setup::make_initial_state(make_problem(c), go_on); });
+    return error_of([&] { make_initial_state(make_problem(c), go_on); });
   };
   EXPECT_THAT(refusal_of(1e7, 0),
               HasSubstr("loading.shear_force_N_per_m is 10000000 N/m, beyond the critical"));
@@ -216,22 +216,24 @@ TEST(Loads, WhatNoShearGivesIsRefused) {
 TEST(Loads, ARampBeginsUnderTheForce) {
   auto c = test::ramped_case();
   c.loading.mean_pressure_Pa = p_Pa;
-  const auto initial = setup::make_initial_state(make_problem(c), go_on);
+  const auto initial = make_initial_state(make_problem(c), go_on);
   ASSERT_TRUE(initial.loads && initial.ramp);
   EXPECT_NEAR(initial.loads->mean_pressure_Pa, p_Pa, 1e-9 * p_Pa);
   EXPECT_EQ(initial.loads->shear_m, initial.subcritical.shear_m);
 }
 
-TEST(Loads, AreThoseOfInfoAndOfNoOtherCase) {
+TEST(Loads, AreThoseWithoutARunAndOfNoOtherCase) {
   auto c = case_of(loads_of_rows[2]);
-  const auto expected = *setup::make_initial_state(make_problem(c), go_on).loads;
-  const auto found = info(make_problem(c)).loads;
-  ASSERT_TRUE(found);
+  const auto expected = *make_initial_state(make_problem(c), go_on).loads;
+  const auto loaded = loaded_state(make_problem(c), check(make_problem(c)));
+  ASSERT_TRUE(loaded);
+  const auto* found = &loaded->loads;
   EXPECT_EQ(found->tilt_left_m, expected.tilt_left_m);
   EXPECT_EQ(found->shear_m, expected.shear_m);
   EXPECT_EQ(found->critical_shear_force_N_per_m, expected.critical_shear_force_N_per_m);
-  EXPECT_FALSE(info(make_problem(test::coarse_case())).loads);
-  EXPECT_FALSE(setup::make_initial_state(make_problem(test::coarse_case()), go_on).loads);
+  const auto of_tilt = make_problem(test::coarse_case());
+  EXPECT_FALSE(loaded_state(of_tilt, check(of_tilt)));
+  EXPECT_FALSE(make_initial_state(make_problem(test::coarse_case()), go_on).loads);
 }
 
 TEST(Loads, EventsShareTheStateOfTheirForces) {
@@ -246,4 +248,4 @@ TEST(Loads, EventsShareTheStateOfTheirForces) {
 }
 
 }  // namespace
-}  // namespace slipfront::advice
+}  // namespace slipfront::setup
