@@ -24,6 +24,7 @@
 #include "motion/stepper.hpp"
 #include "problem/problem.hpp"
 #include "run/run.hpp"
+#include "setup/initial_state.hpp"
 #include "solid/kernels.hpp"
 #include "statics/prestress.hpp"
 #include "statics/statics.hpp"
