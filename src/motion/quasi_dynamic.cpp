@@ -60,8 +60,11 @@ void QuasiDynamicSlip::slide(QuasiDynamicState& state, Rates& rates) const {
 }
 
 double QuasiDynamicSlip::first_dt_s() const {
+  // Where nothing slips yet, as if slip followed the load.
   constexpr double slowest_m_per_s = 1e-30;
-  return accuracy * std::ranges::min(friction_.d_c_m()) / std::max(now_.fastest_m_per_s(), slowest_m_per_s);
+  const double speed_m_per_s =
+      std::max({now_.fastest_m_per_s(), std::abs(edge_speed_m_per_s_), slowest_m_per_s});
+  return accuracy * std::ranges::min(friction_.d_c_m()) / speed_m_per_s;
 }
 
 void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics::Contact> contact,
