@@ -18,9 +18,9 @@ import xarray as xr
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from slipfront._core import Note
 from slipfront.files import DataError, Table, dataset, is_number, number, open_hdf5, read_table, read_toml
 from slipfront.folder import belongs, result_file
+from slipfront.notes import Note, notes_of
 from slipfront.read import (
     BLEW_UP,
     HISTORY_FIELDS,
@@ -33,7 +33,6 @@ from slipfront.read import (
     entry,
     is_open,
     n_finite,
-    notes_of,
     open_history,
     ratio,
     read_balance,

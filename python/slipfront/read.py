@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from slipfront import command
-from slipfront._core import Note
 from slipfront.files import (
     DataError,
     Table,
@@ -187,16 +186,6 @@ class Place:
             return list(self.notes)
         told = f"{self.folder}: {self.with_reason(mark)}: the figures show what there is"
         return [told.replace("µs", "us"), *self.notes]
-
-
-def notes_of(info: dict[str, Any]) -> list[Note]:
-    """Those of run.json or sequence.json; version 0.2 has their texts alone."""
-    told = info.get("notes", info.get("warnings", []))
-    notes = []
-    for note in told if isinstance(told, list) else []:
-        table = note if isinstance(note, dict) else {"text": note}
-        notes.append(Note(str(table.get("kind", "")), str(table.get("text", ""))))
-    return notes
 
 
 def entry(table: dict[str, Any], part: str, key: str) -> Any:

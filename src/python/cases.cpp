@@ -228,26 +228,11 @@ double stable_step_s(const input::CaseFile& given, double element_size_m) {
                               material.stiffness_damping_s);
 }
 
-/// A Diagnostic, of a case or as a run's file tells it.
-struct Note {
-  std::string kind, text;
-};
-
-std::vector<Note> notes_of(const Diagnostics& diagnostics) {
-  std::vector<Note> notes;
-  for (const auto& [kind, text] : diagnostics) notes.push_back({name(kind), text});
+nb::list notes_of(const Diagnostics& diagnostics) {
+  const auto note = nb::module_::import_("slipfront.notes").attr("Note");
+  nb::list notes;
+  for (const auto& [kind, text] : diagnostics) notes.append(note(name(kind), text));
   return notes;
-}
-
-void bind_notes(nb::module_& module) {
-  nb::class_<Note>(module, "Note", "What to know of a case or its run that is not refused for it.")
-      .def(
-          "__init__", [](Note* note, std::string kind, std::string text) { new (note) Note{std::move(kind), std::move(text)}; },
-          "kind"_a, "text"_a)
-      .def_ro("kind", &Note::kind, "units, resolution, physics or output; empty in folders of version 0.2")
-      .def_ro("text", &Note::text, "one line")
-      .def("__str__", [](const Note& note) { return note.text; })
-      .def("__repr__", [](const Note& note) { return fmt::format("{}: {}", note.kind, note.text); });
 }
 
 void bind_speeds(nb::module_& module) {
@@ -371,7 +356,6 @@ void bind_info(nb::module_& module) {
 void bind_cases(nb::module_& module) {
   using C = input::CaseFile;
   using Overrides = std::vector<input::Override>;
-  bind_notes(module);
   bind_speeds(module);
   bind_verdict(module);
   bind_rupture(module);

@@ -222,6 +222,7 @@ Meshes checked_meshes(const Problem& problem, bool only_interface) {
     require_rate_of_events(problem);
     require_end_of_slow_slip(problem, meshes.plate);
   }
+  strength_over_pressure(problem, mesh::interface_x_m(meshes.plate));  // refuses laws that no node can have
   if (!problem.is_prestressed()) return meshes;
   const auto state =
       statics::prestressed(meshes.plate, prescribed_tractions(problem, mesh::interface_x_m(meshes.plate)));

@@ -14,8 +14,9 @@ import numpy as np
 
 from slipfront.files import DataError, is_number, number, read_json_table
 from slipfront.folder import RUN, SEQUENCE, result_file
+from slipfront.notes import notes_of
 from slipfront.opened import OpenRun, open_run
-from slipfront.read import SPEED_KINDS, Front, is_sequence, median, notes_of, ratio, read_columns
+from slipfront.read import SPEED_KINDS, Front, is_sequence, median, ratio, read_columns
 
 Cell = float | int | str
 Interval = tuple[float, float]
