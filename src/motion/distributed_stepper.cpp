@@ -243,7 +243,7 @@ std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t ma
       sizeof(double) *
       record::history_row_values(static_cast<std::size_t>(whole_.own_interface_nodes.back().end),
                                  stepper_->interface_state().law_states.size()));
-  const double bytes = of_update * std::round(step_s() / substep_s()) + of_row;
+  const double bytes = of_update * stepper_->plan().period + of_row;
   const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / bytes));
   std::int64_t taken = 0;
   for (is_interrupted_ = false; taken < max_steps && !is_interrupted_;) {
@@ -275,12 +275,11 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
   finder.memory() = std::move(report.memory);
   add_tractions_of_others(report.seen, finder.n_around());
   SlipUpdateIterator slips(report.seen, finder.n_around());
-  const auto n_substeps = std::lround(step_s() / substep_s());
   const auto n_nodes = static_cast<std::ptrdiff_t>(finder.memory().t_Pa.size());
   const auto n_displacements = displacement_values(probes_);
   std::ptrdiff_t row = 0;
   for (std::int64_t k = 0; k < n_steps; ++k) {
-    for (long substep = 0; substep < n_substeps; ++substep) observer.at_update(slips.next());
+    for (int substep = 0; substep < stepper_->plan().period; ++substep) observer.at_update(slips.next());
     if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
       to->time_s.push_back(time_s());
       to->law_states.resize(stepper_->interface_state().law_states.size());
