@@ -344,24 +344,19 @@ StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_s
     };
   halo_->advance(log, n_steps, callbacks);
   const auto& memory = finder_->memory();
-  // Only own nodes of the interface count.
+  // Only own nodes of the interface count; the samples have no others.
   const auto own = stepper_->bodies().front().interface_side().own;
-  const auto width = stepper_->interface_state().size();
-  const auto append_own = [&]<class T>(const std::vector<T>& values, std::size_t row, std::vector<T>& to) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * width);
-    to.insert(to.end(), begin + own.begin, begin + own.end);
+  const auto own_of = [&]<class T>(const std::vector<T>& values) {
+    return std::vector<T>(values.begin() + own.begin, values.begin() + own.end);
   };
-  report.memory.time_s = memory.time_s;
-  append_own(memory.t_Pa, 0, report.memory.t_Pa);
-  append_own(memory.p_Pa, 0, report.memory.p_Pa);
-  append_own(memory.strength_Pa, 0, report.memory.strength_Pa);
-  append_own(memory.onset_ratio, 0, report.memory.onset_ratio);
-  append_own(memory.slipping, 0, report.memory.slipping);
-  const auto members = members_of(samples);
-  report.samples.resize(members.size() - 1);
-  for (std::size_t f = 0; f < report.samples.size(); ++f)
-    for (std::size_t row = 0; row < samples.time_s.size(); ++row)
-      append_own(*members[1 + f], row, report.samples[f]);
+  report.memory = {memory.time_s,
+                   own_of(memory.t_Pa),
+                   own_of(memory.p_Pa),
+                   own_of(memory.strength_Pa),
+                   own_of(memory.onset_ratio),
+                   own_of(memory.slipping)};
+  for (auto* values : members_of(samples))
+    if (values != &samples.time_s) report.samples.push_back(std::move(*values));
   return report;
 }
 

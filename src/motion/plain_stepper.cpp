@@ -9,6 +9,7 @@
 #include "boundary/boundary.hpp"
 #include "mesh/plate.hpp"
 #include "motion/body.hpp"
+#include "motion/orientation.hpp"
 
 namespace slipfront::motion {
 
@@ -297,8 +298,7 @@ std::vector<double> PlainStepper::snapshot_chunk(int /*k*/) const {
         auto field = is_velocity ? body.v_m_per_s : body.u_m;
         for (const auto& level : body.levels)
           if (is_velocity) set_mean_velocities(body, level, field);
-        // Bodies below are described upside down.
-        const double sign = b > 0 && component == &solid::Field::y ? -1 : 1;
+        const double sign = component == &solid::Field::y ? sign_of_body(b) : 1;
         for (const double value : field.*component) all.push_back(sign * value);
       }
   return all;

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/interruption.hpp"
+#include "motion/orientation.hpp"
 #include "motion/step.hpp"
 
 namespace slipfront::motion {
@@ -252,8 +253,7 @@ void Stepper::append(MotionComponent component, std::size_t body, mesh::Node fir
   } else {
     of_body.append_mean_velocity(along, first, end, to);
   }
-  // Bodies below are described upside down.
-  if (body > 0 && is_y) std::for_each(to.begin() + before, to.end(), [](double& value) { value = -value; });
+  if (is_y) std::for_each(to.begin() + before, to.end(), [&](double& value) { value *= sign_of_body(body); });
 }
 
 record::Energies Stepper::energies() {
