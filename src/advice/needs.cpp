@@ -11,6 +11,7 @@
 #include "interface/friction.hpp"
 #include "mesh/plate.hpp"
 #include "motion/every.hpp"
+#include "motion/step_plan.hpp"
 #include "record/energies.hpp"
 #include "record/probes.hpp"
 #include "record/record.hpp"
@@ -284,12 +285,13 @@ Size mesh_size(const Problem& problem) {
 
 Size estimated_size(const Problem& problem) {
   Size size = mesh_size(problem);
-  double stable_s = infinity;  // corners and coarser blocks change it little, or lower it
+  std::vector<motion::BodySteps> steps;  // corners and coarser blocks change them little, or shorten them
   for (const auto& [plate, material, machine] : problem.bodies)
-    stable_s = std::min(
-        stable_s, solid::stable_step_s(solid::frequency_of_squares_rad_per_s(plate.element_size_m, material),
-                                       material.stiffness_damping_s));
-  size.step_s = problem.time.step_factor * stable_s;
+    steps.push_back(
+        {solid::stable_step_s(solid::frequency_of_squares_rad_per_s(plate.element_size_m, material),
+                              material.stiffness_damping_s),
+         {1}});
+  size.step_s = motion::step_plan(steps, problem.time).lowest_step_s;
   return size;
 }
 

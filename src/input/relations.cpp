@@ -371,8 +371,8 @@ void check_magnitudes(const Case& config) {
     if (const Entry& entry = entry_of(rule.key); applies(entry, config)) check(entry);
 }
 
-/// Refuses more steps than can be taken or counted. The step is estimated from the time in which a wave
-/// crosses an element.
+/// Refuses more steps than can be taken or counted. The time in which a wave crosses an element tells the
+/// step well enough without a mesh; motion::step_plan has the true one.
 void check_duration(const Case& config) {
   constexpr double max_steps = 1e12;
   const auto stable_step_s = [&](const solid::Material& material) {

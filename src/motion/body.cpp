@@ -25,7 +25,7 @@ BodySteps steps_of(const BodySource& source, const boundary::Boundary& boundary,
   omega =
       std::hypot(omega, boundary::largest_spring_frequency_rad_per_s(source.mesh, source.material, boundary));
   const double stable_s = solid::stable_step_s(omega, source.material.stiffness_damping_s);
-  return {stable_s, step_multiples(source.mesh, source.material, boundary, time, stable_s)};
+  return {stable_s, block_ratios(source.mesh, source.material, boundary, time, stable_s)};
 }
 
 BodyMotion motion_of(const BodySource& source) {
@@ -68,16 +68,40 @@ BodySteps body_steps(const BodySource& body, const TimeStepping& time) {
   return steps_of(body, boundary, omega, time);
 }
 
-Body::Body(const BodySource& source, const TimeStepping& time)
-    : motion_(motion_of(source)),
-      steps_(source.part != nullptr
-                 ? source.part->steps
-                 : steps_of(source, motion_.boundary,
-                            solid::largest_frequency_rad_per_s(source.mesh, source.material, motion_.op),
-                            time)),
+std::vector<BodySteps> body_steps(std::span<const BodySource> bodies, std::span<const BodyMotion> motions,
+                                  const TimeStepping& time) {
+  std::vector<BodySteps> steps;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto& [mesh, material, part, corners, machine] = bodies[b];
+    const auto& motion = motions[b];
+    steps.push_back(part != nullptr
+                        ? part->steps
+                        : steps_of(bodies[b], motion.boundary,
+                                   solid::largest_frequency_rad_per_s(mesh, material, motion.op), time));
+  }
+  return steps;
+}
+
+std::vector<BodyMotion> motions_of(std::span<const BodySource> bodies) {
+  std::vector<BodyMotion> motions;
+  for (const auto& body : bodies) motions.push_back(motion_of(body));
+  return motions;
+}
+
+Body::Body(const BodySource& source, BodyMotion motion, const StepPlan::OfBody& steps,
+           const TimeStepping& time, bool lands)
+    : motion_(std::move(motion)),
+      steps_(steps),
+      levels_(make_levels(source.mesh, source.material, motion_, time, steps,
+                          source.part == nullptr ? MaxOverSubdomains{} : source.part->largest)),
       finer_w_(rolling_columns(motion_.op)),
       interface_(make_interface_side(source.mesh, motion_.op.mass_kg, motion_)) {
   if (source.part != nullptr) interface_.own = interface_nodes_in(source.part->own);
+  interface_.dashpots = std::move(levels_.contact_dashpots);
+  if (lands) interface_.landing = Landing(source.mesh, source.material, interface_.nodes, interface_.own);
+  // Single precision needs stepping band by band.
+  if (time.precision == Precision::single_precision && steps.has_common_step)
+    single_ = make_single_rows(levels_.level.front(), motion_.op);
 }
 
 solid::Span Body::interface_nodes_in(solid::Span columns) const {
@@ -91,22 +115,16 @@ solid::Span Body::interface_nodes_in(solid::Span columns) const {
           static_cast<int>(end - interface_.nodes.begin())};
 }
 
-void Body::divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps) {
-  auto stepping = time;
-  stepping.interface_substeps = substeps;
-  levels_ = make_levels(source.mesh, source.material, motion_, stepping, step_s, steps_.multiples,
-                        source.part == nullptr ? MaxOverSubdomains{} : source.part->largest);
-  interface_.dashpots = std::move(levels_.contact_dashpots);
-  if (time.precision == Precision::single_precision)
-    single_ = make_single_rows(levels_.level.front(), motion_.op);
+BodyStep Body::new_step() const {
+  const int columns = rolling_columns(motion_.op);
+  return {
+      solid::RollingRows(columns), solid::RollingRowsOf<float>(has_single_precision() ? columns : 0), {}, {}};
 }
 
-void Body::reserve_steps_in_flight(int n) {
-  const int columns = rolling_columns(motion_.op);
-  const bool has_single = single_.bands.begin < single_.bands.end;
-  for (int k = 0; k < n; ++k)
-    steps_in_flight_.push_back(
-        {solid::RollingRows(columns), solid::RollingRowsOf<float>(has_single ? columns : 0), {}, {}});
+void Body::begin(BodyStep& step) {
+  step.products = {};
+  step.works = {};
+  begun_ = &step;
 }
 
 std::size_t Body::band_of(mesh::Node n) const {
@@ -190,33 +208,27 @@ void Body::take_landing(const StepLevel& level, ImpulseProducts& products) {
   interface_.landing.clear();
 }
 
-void Body::apply_impulse(StepLevel& level, record::Energies& works) {
-  ImpulseProducts products;
-  take_landing(level, products);
-  begin_impulse(level, motion_, works);
-  for (const auto& band : level.bands) apply_band_impulse(level, band, motion_, finer_w_, products, works);
-  end_impulse(level, motion_);
-  if (motion_.damping_s > 0) works.damping_work += level.damping_work.add(products);
+void Body::kick(int k) {
+  auto& works = begun_->works;
+  for (auto& level : levels_.level) {
+    if (k % level.period != 0) continue;
+    const bool is_swept = has_common_step() && &level == &levels_.level.front();
+    ImpulseProducts of_kick;
+    auto& products = is_swept ? begun_->products : of_kick;
+    auto& w = is_swept ? begun_->w : finer_w_;
+    take_landing(level, products);
+    begin_impulse(level, motion_, works);
+    for (const auto& band : std::span(level.bands).first(is_swept ? 1 : level.bands.size()))
+      apply_band_impulse(level, band, motion_, w, products, works);
+    end_impulse(level, motion_);
+    if (!is_swept && motion_.damping_s > 0) works.damping_work += level.damping_work.add(products);
+  }
 }
 
-void Body::apply_due_impulses(BodyStep& step, int k, bool has_global_step) {
+void Body::move(int k) {
   auto& levels = levels_.level;
-  auto& coarsest = levels.front();
-  const auto is_due = [&](const StepLevel& level) { return k % level.period == 0; };
-  if (is_due(coarsest)) {
-    if (has_global_step) {
-      take_landing(coarsest, step.products);
-      begin_impulse(coarsest, motion_, step.works);
-      apply_band_impulse(coarsest, coarsest.bands.front(), motion_, step.w, step.products, step.works);
-      end_impulse(coarsest, motion_);
-    } else {
-      apply_impulse(coarsest, step.works);
-    }
-  }
   for (std::size_t l = 1; l < levels.size(); ++l)
-    if (is_due(levels[l])) apply_impulse(levels[l], step.works);
-  for (std::size_t l = 1; l < levels.size(); ++l)
-    if (is_due(levels[l])) move_shared(levels[l - 1], motion_, levels[l].step_s, step.works);
+    if (k % levels[l].period == 0) move_shared(levels[l - 1], motion_, levels[l].step_s, begun_->works);
 }
 
 void Body::apply_later_band_impulse(BodyStep& step, std::size_t band) {
@@ -228,10 +240,6 @@ void Body::apply_later_band_impulse(BodyStep& step, std::size_t band) {
     apply_band_impulse(coarsest, rows, motion_, step.w, step.products, step.works);
   if (band + 1 == coarsest.bands.size() && motion_.damping_s > 0)
     step.works.damping_work += coarsest.damping_work.add(step.products);
-}
-
-void Body::complete(const BodyStep& step) {
-  add_terms(works_, step.works);
 }
 
 void Body::add_to(StateView& state) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "boundary/machine_springs.hpp"
@@ -12,6 +12,7 @@
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
 #include "motion/state_by_node.hpp"
+#include "motion/step_plan.hpp"
 #include "record/energies.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -28,6 +29,12 @@ struct BodyStep {
 
 /// Steps of a whole body.
 BodySteps body_steps(const BodySource& body, const TimeStepping& time);
+/// Of each body the whole one's. @param motions  of the bodies
+std::vector<BodySteps> body_steps(std::span<const BodySource> bodies, std::span<const BodyMotion> motions,
+                                  const TimeStepping& time);
+
+/// The bodies at rest.
+std::vector<BodyMotion> motions_of(std::span<const BodySource> bodies);
 
 /// A deformable body without contact: its cells in levels with different time steps, and its motion. Its
 /// cells kick the velocities of the interface nodes; the coupling moves them.
@@ -36,22 +43,17 @@ BodySteps body_steps(const BodySource& body, const TimeStepping& time);
 /// u_y and y reversed.
 class Body {
  public:
+  /// @param motion  of motions_of
+  /// @param lands   whether the contact shifts nodes, whose work is to be known; see Landing
   /// @throws UserError where the interface rows do not fit into the mesh.
-  Body(const BodySource& source, const TimeStepping& time);
+  Body(const BodySource& source, BodyMotion motion, const StepPlan::OfBody& steps, const TimeStepping& time,
+       bool lands);
 
-  double stable_step_s() const { return steps_.stable_step_s; }
-  const BodySteps& steps() const { return steps_; }
-  /// Steps of the lowest block in a step of the coarsest one.
-  int multiple() const { return steps_.multiples.back(); }
-
-  /// Divides the cells into levels, before anything else.
-  /// @param step_s      of the coarsest level
-  /// @param substeps    of the last level in a step of the lowest block
-  void divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps);
-  /// Single precision needs stepping band by band, which only a body with the global step has.
-  void disable_single_precision() { single_ = {}; }
+  const BodySteps& steps() const { return steps_.allowed; }
+  /// Whether the wavefront takes the later bands of the coarsest level, apply_later_band_impulse. The other
+  /// levels, and all of a body with a shorter step, go with the interface.
+  bool has_common_step() const { return steps_.has_common_step; }
   bool has_single_precision() const { return !single_.u_x_m.empty(); }
-  void reserve_steps_in_flight(int n);
 
   const solid::Operator& op() const { return motion_.op; }
   const mesh::NodeColumns& columns() const { return motion_.columns; }
@@ -69,8 +71,7 @@ class Body {
   std::size_t band_of(mesh::Node n) const;
   /// Displacement of a node while steps are taken, after its band.
   solid::Pair u_in_flight_m(mesh::Node n) const;
-  /// Sub-steps in a step of the coarsest level.
-  int period() const { return levels_.level.front().period; }
+  int period() const { return steps_.period(); }
   /// With which a node moves.
   double step_s(mesh::Node n) const;
 
@@ -80,28 +81,26 @@ class Body {
   /// moves.
   void start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s);
 
-  /// Workspace of a step of the stepper; several steps are in flight at a time, see threads::Wavefront.
-  BodyStep& step_in_flight(std::int64_t step) {
-    return steps_in_flight_[step % std::ssize(steps_in_flight_)];
-  }
-  /// Applies the impulse of every level whose step begins with sub-step k, and moves the nodes that are due,
-  /// except those of the interface. Where the body has the global step (Stepper::has_global_step), only the
-  /// first band of the coarsest level is treated here.
-  void apply_due_impulses(BodyStep& step, int k, bool has_global_step);
-  /// One later band of the coarsest level of a body with the global step.
+  /// Workspace of a step of the stepper.
+  BodyStep new_step() const;
+  /// Begins a step, in which kick and move (SteppedBody) sum into this workspace.
+  void begin(BodyStep& step);
+  /// Kicks by the cells of every level whose step begins with sub-step k. Nodes of these cells alone move at
+  /// once, while they are in cache. Where the body has the common step, this takes the first band of the
+  /// coarsest level only.
+  void kick(int k);
+  /// Moves the nodes that levels share.
+  void move(int k);
+  /// One later band of the coarsest level of a body with the common step, after all sub-steps.
   void apply_later_band_impulse(BodyStep& step, std::size_t band);
   /// Adds the works of a step that is done to the body's.
-  void complete(const BodyStep& step);
+  void complete(const BodyStep& step) { add_terms(works_, step.works); }
   /// Copies rows in single precision into u_m and v_m_per_s; needed before these are read.
   void sync_to_double() { to_double(single_, motion_); }
 
   const InterfaceSide& interface_side() const { return interface_; }
   /// What the contact moves.
   ContactBody contact() { return {&interface_, &motion_.u_m, &motion_.v_m_per_s}; }
-  /// Prepares the work of shifts by the contact, see Landing.
-  void expect_landings(const mesh::Mesh& mesh, const solid::Material& material) {
-    interface_.landing = Landing(mesh, material, interface_.nodes, interface_.own);
-  }
 
   int n_rows() const { return motion_.columns.n_rows(); }
   /// See Stepper::visit_columns. @param with_shared  also what levels keep of shared nodes
@@ -137,18 +136,17 @@ class Body {
       for (int i = motion_.own[r].begin; i < motion_.own[r].end; ++i) f(first + i);
     }
   }
-  void apply_impulse(StepLevel& level, record::Energies& works);
   /// Products of the landings since the last impulse of a level, if it is the last one.
   void take_landing(const StepLevel& level, ImpulseProducts& products);
   void begin_damping_work();
   void find_equilibrium_load(StepLevel& level);
 
   BodyMotion motion_;
-  BodySteps steps_;
+  StepPlan::OfBody steps_;
   StepLevels levels_;
   SingleRows single_;           ///< none unless time.precision is single
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
-  std::vector<BodyStep> steps_in_flight_;
+  BodyStep* begun_ = nullptr;   ///< the step that kick and move are in
 
   InterfaceSide interface_;
   record::Energies works_;  ///< the works alone

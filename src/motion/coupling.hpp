@@ -73,7 +73,7 @@ class Coupling {
   void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa);
 
   /// The sub-step of length dt_s that begins at time_s: finds the tractions and moves the interface nodes.
-  /// @param sample  where to put the state at time_s, or null
+  /// @param sample  where to put the state of own nodes at time_s, or null
   void update(double time_s, double dt_s, UpdateObserver& observer, record::History* sample,
               record::Energies& works);
 

@@ -243,7 +243,7 @@ std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t ma
       sizeof(double) *
       record::history_row_values(static_cast<std::size_t>(whole_.own_interface_nodes.back().end),
                                  stepper_->interface_state().law_states.size()));
-  const double bytes = of_update * std::round(step_s() / substep_s()) + of_row;
+  const double bytes = of_update * stepper_->plan().period + of_row;
   const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / bytes));
   std::int64_t taken = 0;
   for (is_interrupted_ = false; taken < max_steps && !is_interrupted_;) {
@@ -275,12 +275,11 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
   finder.memory() = std::move(report.memory);
   add_tractions_of_others(report.seen, finder.n_around());
   SlipUpdateIterator slips(report.seen, finder.n_around());
-  const auto n_substeps = std::lround(step_s() / substep_s());
   const auto n_nodes = static_cast<std::ptrdiff_t>(finder.memory().t_Pa.size());
   const auto n_displacements = displacement_values(probes_);
   std::ptrdiff_t row = 0;
   for (std::int64_t k = 0; k < n_steps; ++k) {
-    for (long substep = 0; substep < n_substeps; ++substep) observer.at_update(slips.next());
+    for (int substep = 0; substep < stepper_->plan().period; ++substep) observer.at_update(slips.next());
     if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
       to->time_s.push_back(time_s());
       to->law_states.resize(stepper_->interface_state().law_states.size());
@@ -345,24 +344,19 @@ StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_s
     };
   halo_->advance(log, n_steps, callbacks);
   const auto& memory = finder_->memory();
-  // Only own nodes of the interface count.
+  // Only own nodes of the interface count; the samples have no others.
   const auto own = stepper_->bodies().front().interface_side().own;
-  const auto width = stepper_->interface_state().size();
-  const auto append_own = [&]<class T>(const std::vector<T>& values, std::size_t row, std::vector<T>& to) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * width);
-    to.insert(to.end(), begin + own.begin, begin + own.end);
+  const auto own_of = [&]<class T>(const std::vector<T>& values) {
+    return std::vector<T>(values.begin() + own.begin, values.begin() + own.end);
   };
-  report.memory.time_s = memory.time_s;
-  append_own(memory.t_Pa, 0, report.memory.t_Pa);
-  append_own(memory.p_Pa, 0, report.memory.p_Pa);
-  append_own(memory.strength_Pa, 0, report.memory.strength_Pa);
-  append_own(memory.onset_ratio, 0, report.memory.onset_ratio);
-  append_own(memory.slipping, 0, report.memory.slipping);
-  const auto members = members_of(samples);
-  report.samples.resize(members.size() - 1);
-  for (std::size_t f = 0; f < report.samples.size(); ++f)
-    for (std::size_t row = 0; row < samples.time_s.size(); ++row)
-      append_own(*members[1 + f], row, report.samples[f]);
+  report.memory = {memory.time_s,
+                   own_of(memory.t_Pa),
+                   own_of(memory.p_Pa),
+                   own_of(memory.strength_Pa),
+                   own_of(memory.onset_ratio),
+                   own_of(memory.slipping)};
+  for (auto* values : members_of(samples))
+    if (values != &samples.time_s) report.samples.push_back(std::move(*values));
   return report;
 }
 

@@ -15,6 +15,7 @@
 #include "mesh/node_columns.hpp"
 #include "motion/damping_work.hpp"
 #include "motion/settings.hpp"
+#include "motion/step_plan.hpp"
 #include "record/energies.hpp"
 #include "solid/kernels.hpp"
 #include "solid/material.hpp"
@@ -111,7 +112,7 @@ struct SingleRows {
 /// interface.
 struct StepLevel {
   double step_s = 0;
-  int period = 1;  ///< in steps of the last level
+  int period = 1;  ///< see step_plan.hpp
   solid::PartialStiffness stiffness;
   /// Nodes of the general rows, all of them in the first band, then those with own stencils.
   std::vector<mesh::Node> irregular;
@@ -147,41 +148,38 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 /// For each block of the mesh, its step over that of the lowest one: the largest power of two that its cells
 /// allow, twice, four times ... as long for squares.
 /// @param stable_step_s  of the whole body
-std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
-                                const boundary::Boundary& boundary, const TimeStepping& time,
-                                double stable_step_s);
+std::vector<int> block_ratios(const mesh::Mesh& mesh, const solid::Material& material,
+                              const boundary::Boundary& boundary, const TimeStepping& time,
+                              double stable_step_s);
 
 /// A body's cells divided into levels, coarsest first.
 struct CellLevels {
-  std::vector<int> periods;  ///< steps of the levels, in steps of the last one
+  std::vector<int> periods;
   /// [cells], [nodes]: a node moves with the finest of its cells; orphans count to the first level.
   std::vector<std::uint8_t> of_cell, of_node;
 };
-/// @param multiples  of step_multiples
-CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::span<const int> multiples);
+/// @param block_periods  of a StepPlan
+CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::span<const int> block_periods);
 
-/// How often a level's cells kick their nodes, in steps of the last level, and over how many columns they
-/// reach.
+/// How often a level's cells kick their nodes, and over how many columns they reach.
 struct LevelReach {
   int period = 1, columns = 1;
 };
 /// Reaches of a body's levels, coarsest first.
-std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
-                                        std::span<const int> multiples);
+std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, std::span<const int> block_periods);
 
 /// Columns at either end in which the layer that takes sub-steps has cells above its rows, since it follows a
 /// rounded corner; 0 where there are none.
-int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time);
+int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time,
+                             std::span<const int> block_periods);
 
 /// Replaces each number by its maximum over the subdomains of a body; empty for a whole body.
 using MaxOverSubdomains = std::function<void(std::span<double>)>;
 
-/// @param step_s  of the coarsest level
-/// @param multiples  of step_multiples
-/// @param largest    asked as often by all parts of a body
+/// @param largest  asked as often by all parts of a body
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
-                       const TimeStepping& time, double step_s, std::span<const int> multiples,
-                       const MaxOverSubdomains& largest = {});
+                       const TimeStepping& time, const StepPlan::OfBody& steps,
+                       const MaxOverSubdomains& largest);
 
 /// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
 void set_motion_before(StepLevel& level, const BodyMotion& body);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "base/error.hpp"
@@ -173,20 +174,20 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
       .about("plate.element_size_m");
 }
 
-std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
-                                const boundary::Boundary& boundary, const TimeStepping& time,
-                                double stable_step_s) {
+std::vector<int> block_ratios(const mesh::Mesh& mesh, const solid::Material& material,
+                              const boundary::Boundary& boundary, const TimeStepping& time,
+                              double stable_step_s) {
   const double damping_s = material.stiffness_damping_s;
-  std::vector<int> multiples(1 + mesh.coarser.size(), 1);
+  std::vector<int> ratios(1 + mesh.coarser.size(), 1);
   const bool damped = damping_s >= min_damping_in_steps * time.step_factor * stable_step_s;
-  if (!time.local_steps || mesh.coarser.empty() || !damped) return multiples;
+  if (!time.local_steps || mesh.coarser.empty() || !damped) return ratios;
   // The largest frequency of its free cells bounds a block's from above. Squares do so the more closely the
   // more of them there are: what the lowest block's squares show is no more than what larger ones would.
   const double h = mesh.grid.spacing_m;
   const double of_square = solid::cell_frequency_rad_per_s({0, 0, h, 0, h, h, 0, h}, material);
   const double overestimate = std::max(1.0, stable_step_s / solid::stable_step_s(of_square, damping_s));
   const auto block_of_cell = block_of_cells(mesh);
-  for (std::size_t b = 1; b < multiples.size(); ++b) {
+  for (std::size_t b = 1; b < ratios.size(); ++b) {
     std::vector<bool> in_block;
     for (const int of_cell : block_of_cell) in_block.push_back(of_cell == static_cast<int>(b));
     std::vector<bool> of_block(mesh.n_nodes(), false);
@@ -196,42 +197,39 @@ std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& m
     const double omega =
         std::hypot(solid::largest_cell_frequency_rad_per_s(mesh, material, in_block),
                    boundary::largest_spring_frequency_rad_per_s(mesh, material, boundary, of_block));
-    const double ratio = overestimate * solid::stable_step_s(omega, damping_s) / stable_step_s;
-    for (multiples[b] = 1 << b; multiples[b] > ratio * (1 + 1e-9) && multiples[b] > 1;) multiples[b] /= 2;
+    const double allowed = overestimate * solid::stable_step_s(omega, damping_s) / stable_step_s;
+    for (ratios[b] = 1 << b; ratios[b] > allowed * (1 + 1e-9) && ratios[b] > 1;) ratios[b] /= 2;
   }
-  for (std::size_t b = multiples.size() - 1; b > 0; --b)
-    multiples[b - 1] = std::min(multiples[b - 1], multiples[b]);
-  return multiples;
+  for (std::size_t b = ratios.size() - 1; b > 0; --b) ratios[b - 1] = std::min(ratios[b - 1], ratios[b]);
+  return ratios;
 }
 
 namespace {
 
 /// Whether rows next to the interface have a separate level.
-bool is_layered(const TimeStepping& time) {
-  return time.interface_substeps > 1;
+bool is_layered(std::span<const int> block_periods) {
+  return block_periods.front() > 1;
 }
 
-/// Sub-steps in a step of each level, the coarsest first: those of the blocks and, with sub-steps, that of
-/// the interface rows.
-std::vector<int> periods_of_levels(const TimeStepping& time, std::span<const int> multiples) {
+/// Periods of the levels, the coarsest first: those of the blocks and, with sub-steps, that of the interface
+/// rows.
+std::vector<int> periods_of_levels(std::span<const int> block_periods) {
   std::vector<int> periods;
-  for (const int multiple : multiples)
-    if (const int period = multiple * time.interface_substeps; periods.empty() || periods.back() != period)
-      periods.push_back(period);
-  if (is_layered(time)) periods.insert(periods.begin(), 1);
+  if (is_layered(block_periods)) periods.push_back(1);
+  std::ranges::unique_copy(block_periods, std::back_inserter(periods));
   std::ranges::reverse(periods);
   return periods;
 }
 
 std::vector<std::uint8_t> levels_of_cells(const mesh::Mesh& mesh, const TimeStepping& time,
-                                          std::span<const int> multiples, const std::vector<int>& periods) {
+                                          std::span<const int> block_periods,
+                                          const std::vector<int>& periods) {
   const auto block_of_cell = block_of_cells(mesh);
   std::vector<std::uint8_t> level(mesh.cells.size(), 0);
-  for (std::size_t c = 0; c < level.size(); ++c) {
-    const int period = multiples[block_of_cell[c]] * time.interface_substeps;
-    level[c] = static_cast<std::uint8_t>(std::ranges::find(periods, period) - periods.begin());
-  }
-  if (!is_layered(time)) return level;
+  for (std::size_t c = 0; c < level.size(); ++c)
+    level[c] = static_cast<std::uint8_t>(std::ranges::find(periods, block_periods[block_of_cell[c]]) -
+                                         periods.begin());
+  if (!is_layered(block_periods)) return level;
   const auto near = cells_next_to_interface(mesh, time.interface_rows);
   for (std::size_t c = 0; c < near.size(); ++c)
     if (near[c]) level[c] = static_cast<std::uint8_t>(periods.size() - 1);
@@ -349,28 +347,28 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
 
 }  // namespace
 
-CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::span<const int> multiples) {
-  CellLevels levels{periods_of_levels(time, multiples), {}, {}};
-  levels.of_cell = levels_of_cells(mesh, time, multiples, levels.periods);
+CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::span<const int> block_periods) {
+  CellLevels levels{periods_of_levels(block_periods), {}, {}};
+  levels.of_cell = levels_of_cells(mesh, time, block_periods, levels.periods);
   levels.of_node = levels_of_nodes(mesh, levels.of_cell);
   return levels;
 }
 
-std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
-                                        std::span<const int> multiples) {
+std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, std::span<const int> block_periods) {
   std::vector<LevelReach> levels;
-  for (const int period : periods_of_levels(time, multiples)) levels.push_back({period, 1});
-  for (int block = 0; block < std::ssize(multiples); ++block) {
-    auto& level = *std::ranges::find(levels, multiples[block] * time.interface_substeps, &LevelReach::period);
+  for (const int period : periods_of_levels(block_periods)) levels.push_back({period, 1});
+  for (int block = 0; block < std::ssize(block_periods); ++block) {
+    auto& level = *std::ranges::find(levels, block_periods[block], &LevelReach::period);
     level.columns = std::max(level.columns, mesh::columns_of_cells(mesh, block));
   }
   return levels;
 }
 
-int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time) {
+int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time,
+                             std::span<const int> block_periods) {
   const auto& grid = mesh.grid;
   const auto is_in_lowest_row = [&](mesh::Node n) { return n < grid.stride(); };
-  if (!is_layered(time) || std::ranges::all_of(mesh.interface_nodes, is_in_lowest_row)) return 0;
+  if (!is_layered(block_periods) || std::ranges::all_of(mesh.interface_nodes, is_in_lowest_row)) return 0;
   const auto near = cells_next_to_interface(mesh, time.interface_rows);
   int columns = 0;
   for (std::size_t c = 0; c < near.size(); ++c) {
@@ -384,12 +382,11 @@ int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time) {
 }
 
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
-                       const TimeStepping& time, double step_s, std::span<const int> multiples,
+                       const TimeStepping& time, const StepPlan::OfBody& steps,
                        const MaxOverSubdomains& largest) {
   require_rows_fit(mesh, time);
   const auto& op = body.op;
-  const auto [periods, level_of_cell, level_of_node] = cell_levels(mesh, time, multiples);
-  const int substeps = periods.front();
+  const auto [periods, level_of_cell, level_of_node] = cell_levels(mesh, time, steps.block_periods);
   StepLevels levels;
   levels.level.resize(periods.size());
   levels.level_of_node = level_of_node;
@@ -399,12 +396,12 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
   for (std::size_t l = 0; l < periods.size(); ++l) {
     auto& level = levels.level[l];
     level.period = periods[l];
-    level.step_s = step_s * level.period / substeps;
+    level.step_s = steps.level_step_s(level.period);
     level.damping_work = {level.step_s, body.damping_s,
                           material.density_kg_per_m3 * mesh.grid.spacing_m * mesh.grid.spacing_m};
     std::vector<bool> in_level(mesh.cells.size());
     for (std::size_t c = 0; c < in_level.size(); ++c) in_level[c] = level_of_cell[c] == l;
-    const int edge_row = is_layered(time) ? time.interface_rows : 0;
+    const int edge_row = is_layered(steps.block_periods) ? time.interface_rows : 0;
     level.stiffness =
         periods.size() > 1 ? solid::make_partial_stiffness(mesh, material, op, in_level, edge_row) : op.whole;
     split_spans(level.stiffness.stencil, body.own);
@@ -431,7 +428,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
   for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, body, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (!levels.is_orphan[n] && !op.is_far_edge[n] && body.is_owned(n)) {
-      const int updates = substeps / levels.level[levels.level_of_node[n]].period;
+      const int updates = steps.period() / levels.level[levels.level_of_node[n]].period;
       levels.node_updates_per_step += updates;
     }
   return levels;

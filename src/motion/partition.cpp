@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "motion/level.hpp"
-#include "motion/stepper.hpp"
 
 namespace slipfront::motion {
 
@@ -29,19 +27,12 @@ mesh::Subset Partition::all(int subdomain) const {
   return mesh::Subset({{begin, end}});
 }
 
-int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                     const TimeStepping& time) {
-  const double min_s = std::ranges::min(steps, {}, &BodySteps::stable_step_s).stable_step_s;
+int columns_per_step(std::span<const BodySource> bodies, const StepPlan& plan) {
   std::vector<std::vector<LevelReach>> levels;
-  int substeps = 1;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    auto of_body = time;
-    of_body.interface_substeps *= step_ratio(steps[b].stable_step_s, min_s);
-    levels.push_back(reach_of_levels(bodies[b].mesh, of_body, steps[b].multiples));
-    substeps = std::lcm(substeps, levels.back().front().period);
-  }
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    levels.push_back(reach_of_levels(bodies[b].mesh, plan.bodies[b].block_periods));
   int columns = 0;
-  for (int k = 0; k < substeps; ++k) {
+  for (int k = 0; k < plan.period; ++k) {
     int farthest = 0;
     for (const auto& of_body : levels) {
       int together = 0;
@@ -122,12 +113,14 @@ Partition partition_bodies(std::span<const BodySource> bodies, std::span<const B
   SLIPFRONT_ASSERT(bodies.front().mesh.grid.columns > 0, "a mesh without a grid cannot be shared");
   // Probes look at all nodes of a cell, wherever its first one lies.
   int widest_cell = 1, corner = 0;
-  for (const auto& body : bodies) {
-    widest_cell = std::max(widest_cell, 1 << body.mesh.coarser.size());
-    corner = std::max(
-        {corner, mesh::columns_of_wrapped_cells(body.mesh), columns_of_rounded_layer(body.mesh, time)});
+  const auto plan = step_plan(steps, time);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto& mesh = bodies[b].mesh;
+    widest_cell = std::max(widest_cell, 1 << mesh.coarser.size());
+    corner = std::max({corner, mesh::columns_of_wrapped_cells(mesh),
+                       columns_of_rounded_layer(mesh, time, plan.bodies[b].block_periods)});
   }
-  const int per_step = columns_per_step(bodies, steps, time);
+  const int per_step = columns_per_step(bodies, plan);
   const auto divided = [&](int n) {
     return partition_columns(bodies.front().mesh, n, per_step, widest_cell);
   };

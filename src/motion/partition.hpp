@@ -8,6 +8,7 @@
 #include "mesh/node_columns.hpp"
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
+#include "motion/step_plan.hpp"
 #include "solid/operator.hpp"
 
 namespace slipfront::motion {
@@ -45,8 +46,7 @@ struct Partition {
 /// Columns that the error at a subdomain's edge crosses within a step. An impulse carries it over the cells
 /// that kick, those of a block 2^k columns, of the transition above it twice as many; as far as all the
 /// impulses of a step's levels together do, one after the other. Two bodies kick at the same time.
-int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                     const TimeStepping& time);
+int columns_per_step(std::span<const BodySource> bodies, const StepPlan& plan);
 
 /// Subdomains of nearly equal width.
 /// @param mesh              of the whole plate

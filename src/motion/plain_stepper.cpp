@@ -9,7 +9,7 @@
 #include "boundary/boundary.hpp"
 #include "mesh/plate.hpp"
 #include "motion/body.hpp"
-#include "motion/stepper.hpp"
+#include "motion/orientation.hpp"
 
 namespace slipfront::motion {
 
@@ -21,12 +21,10 @@ double dot(const solid::Field& a, const solid::Field& b) {
          std::inner_product(a.y.begin(), a.y.end(), b.y.begin(), 0.0);
 }
 
-/// @param substep_s, substeps  the last level's step, and how many make a step of the coarsest one
-PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const int> multiples,
-                    double substep_s, int substeps) {
+PlainBody make_body(const BodySource& source, const TimeStepping& time, std::span<const int> block_periods,
+                    double substep_s) {
   const auto& mesh = source.mesh;
   const auto& material = source.material;
-  time.interface_substeps = substeps;
   require_rows_fit(mesh, time);
   const auto n = static_cast<std::size_t>(mesh.n_nodes());
   PlainBody body;
@@ -40,7 +38,7 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.is_loaded = mesh::marked(mesh, boundary.driven);
   body.side = make_interface_side(mesh, body.mass_kg, BodyMotion{});
   body.side.landing = Landing(mesh, material, body.side.nodes);
-  const auto levels = cell_levels(mesh, time, multiples);
+  const auto levels = cell_levels(mesh, time, block_periods);
   for (std::size_t l = 0; l < levels.periods.size(); ++l) {
     PlainLevel level;
     level.period = levels.periods[l];
@@ -76,17 +74,18 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   return body;
 }
 
-/// @param lowest_step_s  set to the step of the lowest block of the fastest body
-std::vector<PlainBody> make_bodies(std::span<const BodySource> sources, const TimeStepping& time,
-                                   double& stable_step_s, double& lowest_step_s) {
+StepPlan plan_of(std::span<const BodySource> sources, const TimeStepping& time) {
   std::vector<BodySteps> steps;
   for (const auto& source : sources) steps.push_back(body_steps(source, time));
-  stable_step_s = std::ranges::min(steps, {}, &BodySteps::stable_step_s).stable_step_s;
-  lowest_step_s = time.step_factor * stable_step_s;
+  return step_plan(steps, time);
+}
+
+std::vector<PlainBody> make_bodies(std::span<const BodySource> sources, const TimeStepping& time,
+                                   const StepPlan& plan) {
   std::vector<PlainBody> bodies;
   for (std::size_t b = 0; b < sources.size(); ++b)
-    bodies.push_back(make_body(sources[b], time, steps[b].multiples, lowest_step_s / time.interface_substeps,
-                               step_ratio(steps[b].stable_step_s, stable_step_s) * time.interface_substeps));
+    bodies.push_back(make_body(sources[b], time, plan.bodies[b].block_periods,
+                               plan.lowest_step_s / time.interface_substeps));
   return bodies;
 }
 
@@ -140,12 +139,9 @@ void add_works(const PlainBody& body, const PlainLevel& level, const solid::Fiel
 
 PlainStepper::PlainStepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
                            const TimeStepping& time)
-    : bodies_(make_bodies(sources, time, stable_step_s_, lowest_step_s_)),
-      coupling_(contact, contacts_of(bodies_)) {
-  for (const auto& body : bodies_) substeps_ = std::lcm(substeps_, body.levels.front().period);
-  const int lowest_steps = substeps_ / time.interface_substeps;
-  step_s_ = lowest_step_s_ * lowest_steps;
-}
+    : plan_(plan_of(sources, time)),
+      bodies_(make_bodies(sources, time, plan_)),
+      coupling_(contact, contacts_of(bodies_)) {}
 
 void PlainStepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -213,7 +209,7 @@ std::int64_t PlainStepper::advance(SlipObserver& observer, std::int64_t max_step
                                    const StepCallbacks& callbacks) {
   for (std::int64_t taken = 0; taken < max_steps;) {
     record::History* sample = callbacks.sample();
-    take_step(std::span(bodies_), substeps_, [&](int k) {
+    take_step(std::span(bodies_), plan_.period, [&](int k) {
       coupling_.update(time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
                        bodies_.front().works);
     });
@@ -260,7 +256,7 @@ double PlainStepper::mass_kg_per_m() const {
 
 double PlainStepper::energy_of_tractions_J_per_m() const {
   const auto& mass_kg = bodies_.front().mass_kg;
-  const double v = stable_step_s_ * coupling_.largest_acceleration_m_per_s2();
+  const double v = plan_.stable_step_s * coupling_.largest_acceleration_m_per_s2();
   return 0.5 * std::reduce(mass_kg.begin(), mass_kg.end()) * v * v;
 }
 
@@ -274,7 +270,7 @@ double PlainStepper::node_updates_per_step() const {
   double updates = 0;
   for (const auto& body : bodies_)
     for (const auto& level : body.levels) {
-      const int steps = substeps_ / level.period;
+      const int steps = plan_.period / level.period;
       for (const auto n : level.nodes)
         if (!body.is_loaded[n]) updates += steps;
     }
@@ -302,8 +298,7 @@ std::vector<double> PlainStepper::snapshot_chunk(int /*k*/) const {
         auto field = is_velocity ? body.v_m_per_s : body.u_m;
         for (const auto& level : body.levels)
           if (is_velocity) set_mean_velocities(body, level, field);
-        // Bodies below are described upside down.
-        const double sign = b > 0 && component == &solid::Field::y ? -1 : 1;
+        const double sign = component == &solid::Field::y ? sign_of_body(b) : 1;
         for (const double value : field.*component) all.push_back(sign * value);
       }
   return all;

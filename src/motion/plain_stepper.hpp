@@ -9,6 +9,7 @@
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
 #include "motion/step.hpp"
+#include "motion/step_plan.hpp"
 #include "motion/time_stepper.hpp"
 #include "statics/statics.hpp"
 
@@ -27,10 +28,10 @@ class PlainStepper : public TimeStepper {
 
   void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {}) override;
 
-  double stable_step_s() const override { return stable_step_s_; }
-  double step_s() const override { return step_s_; }
-  double lowest_step_s() const override { return lowest_step_s_; }
-  double substep_s() const override { return step_s_ / substeps_; }
+  double stable_step_s() const override { return plan_.stable_step_s; }
+  double step_s() const override { return plan_.step_s; }
+  double lowest_step_s() const override { return plan_.lowest_step_s; }
+  double substep_s() const override { return plan_.substep_s(); }
   double node_updates_per_step() const override;
   std::int64_t n_nodes() const override;
   std::int64_t step() const override { return step_; }
@@ -67,9 +68,8 @@ class PlainStepper : public TimeStepper {
  private:
   StateView state();
 
-  double stable_step_s_ = 0, lowest_step_s_ = 0, step_s_ = 0;
+  StepPlan plan_;
   std::vector<PlainBody> bodies_;
-  int substeps_ = 1;  ///< in a step
   Coupling coupling_;
   std::vector<Probe> probes_;
   std::int64_t step_ = 0;

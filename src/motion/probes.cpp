@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "motion/orientation.hpp"
 
 namespace slipfront::motion {
 
@@ -53,7 +54,7 @@ PlacesInBody places_in(std::span<const record::ProbePlace> places, bool below) {
 
 void locate_in(const BodySource& source, std::size_t body, std::span<const record::ProbePlace> places,
                std::vector<std::optional<Probe>>& found) {
-  const auto in = places_in(places, body > 0);
+  const auto in = places_in(places, sign_of_body(body) < 0);
   if (in.place.empty()) return;
   for (const auto& cell : source.mesh.cells) {
     const auto c = solid::cell_coordinates(source.mesh, cell);
@@ -147,7 +148,7 @@ void ProbeRecorder::append_row(double time_s, std::span<const double> after_m,
       v_x += weight * (after_m[at] - before_m_[at]) / (2 * step_s_);
       v_y += weight * (after_m[at + 1] - before_m_[at + 1]) / (2 * step_s_);
     }
-    const double up = probe.body > 0 ? -1 : 1;  // y of a body that is described upside down
+    const double up = sign_of_body(probe.body);
     auto further = further_;
     if (further) further->xy_Pa *= up, further->xy_Pa_per_s *= up;
     const auto [e, s] = solid::strain_and_stress(probe.shape, u_m, probe.material, further, time_s);

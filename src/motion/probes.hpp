@@ -14,21 +14,12 @@
 #include "mesh/node_columns.hpp"
 #include "motion/every.hpp"
 #include "motion/level.hpp"
+#include "motion/step_plan.hpp"
 #include "record/probes.hpp"
 #include "solid/element.hpp"
 #include "solid/material.hpp"
 
 namespace slipfront::motion {
-
-/// What a body's steps follow from.
-struct BodySteps {
-  double stable_step_s = 0;
-  std::vector<int> multiples;  ///< see step_multiples
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(stable_step_s, multiples);
-  }
-};
 
 /// Data of the whole body that a subdomain, some columns of its mesh, needs.
 struct BodySubdomain {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,7 +36,7 @@ namespace slipfront::motion {
 
 /// Cells that take the same step. Fields: [nodes of the body].
 struct PlainLevel {
-  int period = 1;  ///< in sub-steps
+  int period = 1;  ///< see step_plan.hpp
   double step_s = 0;
   std::vector<std::int32_t> cells;
   std::vector<mesh::Node> nodes;  ///< that move with this level
@@ -58,6 +59,8 @@ struct PlainBody {
   InterfaceSide side;
   /// What the contact moves.
   ContactBody contact() { return {&side, &u_m, &v_m_per_s}; }
+  inline void kick(int k);
+  inline void move(int k);
 
   solid::Field u_m, v_m_per_s;
   solid::Field load_m_per_s2, impulse_m_per_s;  ///< of coarser levels, on shared nodes
@@ -127,17 +130,30 @@ inline void move(PlainBody& body, const PlainLevel& level) {
   }
 }
 
-/// A step of the coarsest level.
+void PlainBody::kick(int k) {
+  for (auto& level : levels)
+    if (k % level.period == 0) motion::kick(*this, level);
+}
+
+void PlainBody::move(int k) {
+  for (const auto& level : levels)
+    if (k % level.period == 0) motion::move(*this, level);
+}
+
+/// A body without contact, as a step takes it.
+template <class B>
+concept SteppedBody = requires(B body, int k) {
+  body.kick(k);  // the cells of all levels whose step begins with sub-step k
+  body.move(k);  // the nodes of these levels that are not in contact
+};
+
+/// Takes a step of so many sub-steps, or the first ones of it.
 /// @param contact  called at the end of each sub-step k: finds the tractions and moves the nodes in contact
-template <class Contact>
-void take_step(std::span<PlainBody> bodies, int n_substeps, Contact&& contact) {
+template <SteppedBody B, std::invocable<int> Contact>
+void take_step(std::span<B> bodies, int n_substeps, Contact&& contact) {
   for (int k = 0; k < n_substeps; ++k) {
-    for (auto& body : bodies)
-      for (auto& level : body.levels)
-        if (k % level.period == 0) kick(body, level);
-    for (auto& body : bodies)
-      for (auto& level : body.levels)
-        if (k % level.period == 0) move(body, level);
+    for (auto& body : bodies) body.kick(k);
+    for (auto& body : bodies) body.move(k);
     contact(k);
   }
 }

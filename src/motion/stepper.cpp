@@ -2,11 +2,12 @@
 #include "motion/stepper.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/interruption.hpp"
+#include "motion/orientation.hpp"
+#include "motion/step.hpp"
 
 namespace slipfront::motion {
 
@@ -33,37 +34,15 @@ int useful_threads(int wanted, std::size_t n_bands, int steps_per_sweep) {
   return std::clamp(static_cast<int>(n_bands) / (steps_per_sweep + 1), 1, wanted);
 }
 
-/// Steps of the fastest body that a slower one takes at once: beyond this there is little left to save, and
-/// the common step would outgrow what is to be seen.
-constexpr double max_at_once = 16;
-
-/// Bodies as they are made, not yet divided.
-std::vector<Body> make_bodies(std::span<const BodySource> sources, const TimeStepping& time) {
+std::vector<Body> make_bodies(std::span<const BodySource> sources, std::vector<BodyMotion> motions,
+                              const StepPlan& plan, const TimeStepping& time, bool lands) {
   std::vector<Body> bodies;
-  for (const auto& source : sources) bodies.emplace_back(source, time);
+  for (std::size_t b = 0; b < sources.size(); ++b)
+    bodies.emplace_back(sources[b], std::move(motions[b]), plan.bodies[b], time, lands);
   return bodies;
 }
 
-/// Divides bodies into levels by the sub-step that they share.
-/// @param stable_s  the fastest body's
-/// @return the step of its lowest block
-double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, const TimeStepping& time,
-              double stable_s) {
-  const double lowest_s = time.step_factor * stable_s;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const int at_once = step_ratio(bodies[b].stable_step_s(), stable_s);
-    bodies[b].divide(sources[b], time, lowest_s * (at_once * bodies[b].multiple()),
-                     at_once * time.interface_substeps);
-  }
-  return lowest_s;
-}
-
 }  // namespace
-
-int step_ratio(double stable_step_s, double min_s) {
-  const double allowed = stable_step_s / min_s * (1 + 1e-9);
-  return static_cast<int>(std::clamp(allowed, 1.0, max_at_once));
-}
 
 Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
                  const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution)
@@ -75,34 +54,34 @@ Stepper::Stepper(const BodySource& above, const BodySource& below, const interfa
 
 Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
                  const TimeStepping& time, const Execution& execution)
-    : bodies_(make_bodies(sources, time)),
-      stable_step_s_(std::ranges::min_element(bodies_, {}, &Body::stable_step_s)->stable_step_s()),
-      lowest_step_s_(divide(bodies_, sources, time, stable_step_s_)),
+    : Stepper(sources, contact, time, execution, motions_of(sources)) {}
+
+Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
+                 const TimeStepping& time, const Execution& execution, std::vector<BodyMotion> motions)
+    : plan_(step_plan(body_steps(sources, motions, time), time)),
+      bodies_(make_bodies(sources, std::move(motions), plan_, time,
+                          contact.algorithm == interface::ContactAlgorithm::predictor_corrector)),
       coupling_(contact, contacts_of(bodies_)) {
-  for (const auto& body : bodies_) substeps_ = std::lcm(substeps_, body.period());
-  const int lowest_steps = substeps_ / time.interface_substeps;
-  step_s_ = lowest_step_s_ * lowest_steps;
   for (const auto& body : bodies_)
-    if (has_global_step(body)) n_bands_ = std::max(n_bands_, static_cast<int>(body.n_bands()));
-  int depth = execution.steps_per_sweep > 0
-                  ? execution.steps_per_sweep
-                  : suitable_steps_per_sweep(mesh::blocks(sources.front().mesh).back(), execution);
+    if (body.has_common_step()) n_bands_ = std::max(n_bands_, static_cast<int>(body.n_bands()));
+  int steps_per_sweep = execution.steps_per_sweep > 0
+                            ? execution.steps_per_sweep
+                            : suitable_steps_per_sweep(mesh::blocks(sources.front().mesh).back(), execution);
   if (execution.max_steps > 0)
-    depth = std::min(depth, (execution.max_steps + execution.threads - 1) / execution.threads);
+    steps_per_sweep =
+        std::min(steps_per_sweep, (execution.max_steps + execution.threads - 1) / execution.threads);
   wavefront_ = std::make_unique<threads::Wavefront>(
-      useful_threads(execution.threads, static_cast<std::size_t>(n_bands_), depth), depth);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (!has_global_step(bodies_[b])) bodies_[b].disable_single_precision();
-    bodies_[b].reserve_steps_in_flight(wavefront_->max_steps());
-    if (contact.algorithm == interface::ContactAlgorithm::predictor_corrector)
-      bodies_[b].expect_landings(sources[b].mesh, sources[b].material);
-  }
+      useful_threads(execution.threads, static_cast<std::size_t>(n_bands_), steps_per_sweep),
+      steps_per_sweep);
+  for (int k = 0; k < wavefront_->max_steps(); ++k)
+    for (auto& of_bodies = steps_in_flight_.emplace_back(); const auto& body : bodies_)
+      of_bodies.push_back(body.new_step());
 }
 
 double Stepper::node_updates_per_step() const {
   double sum = 0;
   for (const auto& body : bodies_) {
-    const int steps = substeps_ / body.period();
+    const int steps = plan_.period / body.period();
     sum += body.levels().node_updates_per_step * steps;
   }
   return sum;
@@ -119,26 +98,24 @@ void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_
 
 void Stepper::advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
                                 record::History* sample) {
-  for (auto& body : bodies_) {
-    body.step_in_flight(step).products = {};
-    body.step_in_flight(step).works = {};
-  }
-  for (int k = 0; k < n_substeps; ++k) {
+  auto& of_bodies = in_flight(step);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].begin(of_bodies[b]);
+  take_step(std::span(bodies_), n_substeps, [&](int k) {
     if ((k + 1) % substeps_between_looks == 0) require_no_interruption("interrupted within a step");
-    // All forces are those of the places and velocities before the sub-step.
-    for (auto& body : bodies_) body.apply_due_impulses(body.step_in_flight(step), k, has_global_step(body));
     coupling_.update(time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
-                     bodies_.front().step_in_flight(step).works);
-  }
-  for (auto& body : bodies_)
-    if (!has_global_step(body)) body.complete(body.step_in_flight(step));
+                     of_bodies.front().works);
+  });
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (!bodies_[b].has_common_step()) bodies_[b].complete(of_bodies[b]);
 }
 
 void Stepper::advance_band(std::int64_t step, std::size_t band) {
-  for (auto& body : bodies_) {
-    if (!has_global_step(body) || band >= body.n_bands()) continue;
-    body.apply_later_band_impulse(body.step_in_flight(step), band);
-    if (band + 1 == body.n_bands()) body.complete(body.step_in_flight(step));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    auto& body = bodies_[b];
+    auto& of_body = in_flight(step)[b];
+    if (!body.has_common_step() || band >= body.n_bands()) continue;
+    body.apply_later_band_impulse(of_body, band);
+    if (band + 1 == body.n_bands()) body.complete(of_body);
   }
 }
 
@@ -159,7 +136,7 @@ void Stepper::set_probes(std::vector<Probe> probes) {
     for (std::size_t a = 0; a < 4; ++a) {
       const auto b = probes_[p].body;
       const auto node = static_cast<mesh::Node>(probes_[p].node[a]);
-      probed_nodes_[has_global_step(bodies_[b]) ? bodies_[b].band_of(node) : 0].push_back(
+      probed_nodes_[bodies_[b].has_common_step() ? bodies_[b].band_of(node) : 0].push_back(
           {b, node, 8 * p + 2 * a});
     }
 }
@@ -192,11 +169,11 @@ std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t max_steps,
                               const StepCallbacks& callbacks, const BandCallbacks& band_callbacks) {
   const auto first = step_, last = first + max_steps - 1;
   const auto is_in_calling_thread = [&](std::int64_t number) {
-    return (number - first) / wavefront_->depth() % wavefront_->threads() == 0;
+    return (number - first) / wavefront_->steps_per_sweep() % wavefront_->threads() == 0;
   };
   const auto unit = [&](std::int64_t number, int band) {
     if (band_callbacks.before && is_in_calling_thread(number)) band_callbacks.before(number - first, band);
-    if (band == 0) advance_interface(number, substeps_, observer, callbacks.sample());
+    if (band == 0) advance_interface(number, plan_.period, observer, callbacks.sample());
     advance_band(number, static_cast<std::size_t>(band));
     if (!probed_nodes_.empty()) store_probed(number + 1, static_cast<std::size_t>(band), callbacks);
     if (number == last && band_callbacks.after_last) band_callbacks.after_last(band);
@@ -246,7 +223,7 @@ double Stepper::mass_kg_per_m() const {
 }
 
 double Stepper::energy_of_tractions_J_per_m() const {
-  const double v = stable_step_s_ * coupling_.largest_acceleration_m_per_s2();
+  const double v = plan_.stable_step_s * coupling_.largest_acceleration_m_per_s2();
   return 0.5 * bodies_.front().mass_kg_per_m() * v * v;
 }
 
@@ -276,8 +253,7 @@ void Stepper::append(MotionComponent component, std::size_t body, mesh::Node fir
   } else {
     of_body.append_mean_velocity(along, first, end, to);
   }
-  // Bodies below are described upside down.
-  if (body > 0 && is_y) std::for_each(to.begin() + before, to.end(), [](double& value) { value = -value; });
+  if (is_y) std::for_each(to.begin() + before, to.end(), [&](double& value) { value *= sign_of_body(body); });
 }
 
 record::Energies Stepper::energies() {

@@ -14,6 +14,7 @@
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
 #include "motion/slip_finder.hpp"
+#include "motion/step_plan.hpp"
 #include "motion/time_stepper.hpp"
 #include "processes/processes.hpp"
 #include "record/energies.hpp"
@@ -45,10 +46,6 @@ struct BandCallbacks {
   std::function<void(int band)> after_last;
 };
 
-/// Steps of the fastest body that one with this stable step takes at once.
-/// @param min_s  stable step of the fastest body
-int step_ratio(double stable_step_s, double min_s);
-
 /// Explicit motion of a plate on a rigid plane, or on another body: Newmark with beta = 0, gamma = 1/2
 /// (displacements at whole steps, velocities at half steps), damping force on the last half-step velocity.
 ///
@@ -58,11 +55,7 @@ int step_ratio(double stable_step_s, double min_s);
 /// the start of the event as a constant load in every sub-step, and its change since then in impulses;
 /// without this, a stressed plate at rest would not stay at rest. Reversible and symplectic where nothing
 /// dissipates. With one sub-step it is the plain scheme. The blocks of a graded plate are such levels, too,
-/// each with the step that its cells allow (step_multiples); a step of the stepper is that of the coarsest
-/// block.
-///
-/// Two bodies share their sub-step, the one that the faster of them allows. The other one's cells away from
-/// the interface take steps longer by the whole number that they allow, up to 16.
+/// each with the step that its cells allow; see step_plan.hpp.
 class Stepper : public TimeStepper {
  public:
   /// On the rigid plane.
@@ -76,10 +69,11 @@ class Stepper : public TimeStepper {
   Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
           const TimeStepping& time, const Execution& execution = {});
 
-  double stable_step_s() const override { return stable_step_s_; }
-  double step_s() const override { return step_s_; }
-  double lowest_step_s() const override { return lowest_step_s_; }
-  double substep_s() const override { return step_s_ / substeps_; }
+  const StepPlan& plan() const { return plan_; }
+  double stable_step_s() const override { return plan_.stable_step_s; }
+  double step_s() const override { return plan_.step_s; }
+  double lowest_step_s() const override { return plan_.lowest_step_s; }
+  double substep_s() const override { return plan_.substep_s(); }
   /// The (sub-)step with which a node moves; its velocity belongs to half of it before the displacement.
   double step_s(mesh::Node n) const { return bodies_.front().step_s(n); }
   const solid::Operator& plate() const { return bodies_.front().op(); }
@@ -90,7 +84,7 @@ class Stepper : public TimeStepper {
   std::int64_t n_nodes() const override;
 
   /// Steps that a thread takes in one sweep through memory.
-  int steps_per_sweep() const { return wavefront_->depth(); }
+  int steps_per_sweep() const { return wavefront_->steps_per_sweep(); }
 
   void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {}) override;
 
@@ -148,8 +142,8 @@ class Stepper : public TimeStepper {
   /// Rows of a body's nodes that a step has moved for good when its band has: these, from 0. Of the others
   /// the first one has been read.
   int rows_moved(std::size_t body, int band) const {
-    return has_global_step(bodies_[body]) ? bodies_[body].rows_moved(static_cast<std::size_t>(band))
-                                          : bodies_[body].n_rows();
+    return bodies_[body].has_common_step() ? bodies_[body].rows_moved(static_cast<std::size_t>(band))
+                                           : bodies_[body].n_rows();
   }
   /// Calls visit(values, n) with all that changes between two steps and decides on the motion of some
   /// neighbouring columns of nodes. Others may be put there.
@@ -190,25 +184,28 @@ class Stepper : public TimeStepper {
   }
 
  private:
-  /// Whether the wavefront takes the bands of a body's coarsest level; its other levels, and all of a body
-  /// with a shorter step, go with the interface.
-  bool has_global_step(const Body& body) const { return body.period() == substeps_; }
-  /// The part of a step that concerns the interface: all that is due in its sub-steps, or in the first
-  /// n_substeps of them.
+  Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
+          const TimeStepping& time, const Execution& execution, std::vector<BodyMotion> motions);
+
+  /// Workspaces of the bodies; several steps are in flight at a time, see threads::Wavefront.
+  std::vector<BodyStep>& in_flight(std::int64_t step) {
+    return steps_in_flight_[static_cast<std::size_t>(step % std::ssize(steps_in_flight_))];
+  }
+  /// The part of a step that concerns the interface: take_step, or the first n_substeps of it. Of the
+  /// coarsest levels the later bands are left to advance_band.
   void advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
                          record::History* sample);
   /// Copies the displacements of the watched nodes that the bands `band` have moved to where a step ends.
   void store_probed(std::int64_t step, std::size_t band, const StepCallbacks& callbacks) const;
-  /// One band of the bodies' coarsest levels.
+  /// One band of the coarsest levels with the common step.
   void advance_band(std::int64_t step, std::size_t band);
 
+  StepPlan plan_;
   std::vector<Body> bodies_;
-  double stable_step_s_ = 0, lowest_step_s_ = 0;
   Coupling coupling_;
-  double step_s_ = 0;
-  int substeps_ = 1;  ///< in a step
-  int n_bands_ = 1;   ///< of the bodies that lead
+  int n_bands_ = 1;  ///< of the bodies with the common step
   std::unique_ptr<threads::Wavefront> wavefront_;
+  std::vector<std::vector<BodyStep>> steps_in_flight_;
   std::vector<Probe> probes_;
   /// A node of a probe, and where its displacement goes.
   struct ProbedNode {

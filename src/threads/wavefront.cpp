@@ -23,9 +23,9 @@ void pause() {
 
 }  // namespace
 
-Wavefront::Wavefront(int threads, int depth)
-    : depth_(depth), team_(threads), ended_(std::make_unique<Progress[]>(team_.size())) {
-  SLIPFRONT_ASSERT(threads >= 1 && depth >= 1, "a wavefront needs a thread and a step");
+Wavefront::Wavefront(int threads, int steps_per_sweep)
+    : steps_per_sweep_(steps_per_sweep), team_(threads), ended_(std::make_unique<Progress[]>(team_.size())) {
+  SLIPFRONT_ASSERT(threads >= 1 && steps_per_sweep >= 1, "a wavefront needs a thread and a step");
 }
 
 std::int64_t Wavefront::run(std::int64_t first, std::int64_t n, int units, const Unit& unit) {
@@ -34,7 +34,7 @@ std::int64_t Wavefront::run(std::int64_t first, std::int64_t n, int units, const
   failed_ = false;
   for (int thread = 0; thread < threads(); ++thread) ended_[static_cast<std::size_t>(thread)].value = 0;
   // One group alone needs no other thread.
-  team_.run(n <= depth_ ? 1 : threads(), [this](int thread) { take_groups(thread); });
+  team_.run(n <= steps_per_sweep_ ? 1 : threads(), [this](int thread) { take_groups(thread); });
   if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return end_ - first;
 }
@@ -58,12 +58,12 @@ void Wavefront::take_groups(int thread) {
   const int n_threads = threads();
   try {
     for (std::int64_t group = thread;; group += n_threads) {
-      const std::int64_t first_step = first + group * depth_;
+      const std::int64_t first_step = first + group * steps_per_sweep_;
       // Progress of group g counts from g times this.
       const std::int64_t per_group = units + 1;
       const std::int64_t before = (group - 1) * per_group;
       const int other = static_cast<int>((group + n_threads - 1) % n_threads);
-      std::int64_t steps = std::min<std::int64_t>(depth_, first + n - first_step);
+      std::int64_t steps = std::min<std::int64_t>(steps_per_sweep_, first + n - first_step);
       if (steps <= 0) break;
       // In round `front`, step s of the group takes unit front - s: each is one unit behind the step before.
       for (std::int64_t front = 0; front < units + steps - 1; ++front) {
@@ -87,7 +87,7 @@ void Wavefront::take_groups(int thread) {
         const std::int64_t units_done = std::clamp<std::int64_t>(front - (steps - 1) + 1, 0, units);
         ended.store(group * per_group + units_done, std::memory_order_release);
       }
-      if (steps < depth_) break;
+      if (steps < steps_per_sweep_) break;
     }
   } catch (...) {
     if (!failed_.exchange(true)) failure_ = std::current_exception();

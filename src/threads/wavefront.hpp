@@ -13,23 +13,23 @@ namespace slipfront::threads {
 
 /// Takes many time steps in one sweep through memory. A step consists of units 0 ... n-1, in this order; unit
 /// k of a step may begin when unit k + 1 of the step before has ended (the last one's, where there is no
-/// k + 1). A thread takes `depth` steps through the units together, each one unit behind the step before, so
-/// that a unit's data are still in cache when the next step needs them; the threads take turns with such
-/// groups of steps.
+/// k + 1). A thread takes `steps_per_sweep` steps through the units together, each one unit behind the step
+/// before, so that a unit's data are still in cache when the next step needs them; the threads take turns
+/// with such groups of steps.
 ///
-/// Whatever depth and threads, each unit sees the same data, and the units 0 run one after the other.
+/// Whatever they and the threads are, each unit sees the same data, and the units 0 run one after the other.
 class Wavefront {
  public:
   /// @return of unit 0: whether another step may follow; else without meaning
   using Unit = std::function<bool(std::int64_t step, int unit)>;
 
-  Wavefront(int threads, int depth);
+  Wavefront(int threads, int steps_per_sweep);
 
   /// As many as asked for, or fewer if no more are available.
   int threads() const { return team_.size(); }
-  int depth() const { return depth_; }
+  int steps_per_sweep() const { return steps_per_sweep_; }
   /// Steps that may be under way at a time: steps that differ by this much never are.
-  int max_steps() const { return threads() * depth_; }
+  int max_steps() const { return threads() * steps_per_sweep_; }
 
   /// Takes steps first ... first + n - 1, or fewer where a unit 0 asks for it.
   /// @return the number of steps taken, all of their units done.
@@ -50,7 +50,7 @@ class Wavefront {
   void take_groups(int thread);
   bool wait_for(int thread, std::int64_t value) const;
 
-  int depth_;
+  int steps_per_sweep_;
   Team team_;
   std::unique_ptr<Progress[]> ended_;  ///< [threads]
   Task task_;

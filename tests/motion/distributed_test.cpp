@@ -292,7 +292,7 @@ TEST(Subdomains, AreWrongNoFartherThanTheColumnsOfAStep) {
         if (!std::isfinite(body.u_m().x[n]) || !std::isfinite(body.v_m_per_s().x[n]))
           end = std::max(end, body.columns().column_of(static_cast<mesh::Node>(n)) + 1);
     }
-    const int most = columns_per_step(sources, steps, problem.time);
+    const int most = columns_per_step(sources, step_plan(steps, problem.time));
     EXPECT_LE(end, n_wrong + most);
     EXPECT_GT(end, n_wrong);
   }
@@ -414,7 +414,7 @@ TEST(BodySteps, OfManySquaresFollowFromInterfaceAndCorners) {
     const auto expected = body_steps({whole, pmma}, {});
     const auto found = body_steps({interface, pmma, nullptr, corners ? &*corners : nullptr}, {});
     EXPECT_EQ(found.stable_step_s, expected.stable_step_s);
-    EXPECT_EQ(found.multiples, expected.multiples);
+    EXPECT_EQ(found.block_ratios, expected.block_ratios);
     // Of the steep reliefs the corners have the highest frequency, elsewhere squares.
     if (plate == &steep) {
       EXPECT_GT(body_steps({interface, pmma}, {}).stable_step_s, expected.stable_step_s);
