@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/clock.hpp"
@@ -16,6 +17,7 @@
 #include "problem/contact.hpp"
 #include "run/begin.hpp"
 #include "run/notes.hpp"
+#include "run/outputs.hpp"
 #include "run/snapshot_plan.hpp"
 
 namespace slipfront::run {
@@ -175,7 +177,7 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, Initia
 
 motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
-                             motion::EventOutput* output, motion::Observers more) {
+                             const results::Sinks& sinks, motion::Observers more) {
   const auto& state = event_state(problem, initial);
   std::optional<motion::Interval> stop_window;
   if (problem.is_sequence()) stop_window = {state.inside_from_m, state.inside_to_m};
@@ -186,13 +188,14 @@ motion::EventRun begin_event(const Problem& problem, const InitialState& initial
                 stability::radiation_damping_Pa_s_per_m(materials_of(problem))},
       .loads_settle_s = loads_settle_s(problem),
       .time = problem.time,
-      .sampling = {problem.output.history_interval_s, problem.output.energy_interval_s,
-                   snapshot_plan(problem, stepper.step_s()).times_s, problem.probe_interval_s,
-                   prescribed_stress(problem)},
+      .tip_slip_interval_s = problem.output.history_interval_s,
+      .energy_interval_s = problem.output.energy_interval_s,
       .halo = motion::halo_for(initial.mesh, problem.fronts.l_star_m),
       .stop_window = stop_window,
       .slow_m_per_s = problem.is_slow() ? slow_slip_rate_m_per_s(problem) : infinity};
-  return {stepper, setup, monitor, output, std::move(more)};
+  auto list = results::observers_of(output_setup(problem, initial, stepper.step_s()), stepper, sinks);
+  std::ranges::move(more, std::back_inserter(list));
+  return {stepper, setup, monitor, std::move(list)};
 }
 
 Result run_from(const Problem& problem, const InitialState& initial, const motion::Monitor& monitor,
@@ -200,14 +203,17 @@ Result run_from(const Problem& problem, const InitialState& initial, const motio
   const auto stepper = whole_stepper(problem, initial, execution);
   stepper->start(event_state(problem, initial), shear_speed_in_event_m_per_s(problem),
                  loads_of_event(problem, initial));
-  return run_from(problem, initial, *stepper, monitor, nullptr, std::move(more));
+  return run_from(problem, initial, *stepper, monitor, std::move(more));
 }
 
 Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& stepper,
-                const motion::Monitor& monitor, motion::EventOutput* output, motion::Observers more) {
+                const motion::Monitor& monitor, motion::Observers more) {
   const auto start = Clock::now();
-  auto event = begin_event(problem, initial, stepper, monitor, output, std::move(more));
+  results::KeptOutputs rows;
+  const auto sinks = [&](const results::Output& output) -> results::RowSink& { return rows[output.file]; };
+  auto event = begin_event(problem, initial, stepper, monitor, sinks, std::move(more));
   auto result = collect(problem, stepper, event.run());
+  result.rows = std::move(rows);
   result.stepping_wall_s = seconds_since(start);
   analyse(result, initial);
   return result;

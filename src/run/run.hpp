@@ -15,6 +15,7 @@
 #include "problem/problem.hpp"
 #include "record/sequence.hpp"
 #include "results/contents.hpp"
+#include "results/outputs.hpp"
 #include "run/initial_state.hpp"
 #include "run/mesh_choice.hpp"
 #include "run/needs.hpp"
@@ -23,11 +24,6 @@
 #include "run/subdomains.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
-
-namespace slipfront::results {
-struct RunFiles;
-struct Table;
-}  // namespace slipfront::results
 
 namespace slipfront::run {
 
@@ -51,6 +47,7 @@ struct Result {
   double node_updates_per_step = 0;
   double stepping_wall_s = 0;
   motion::Event event;
+  results::KeptOutputs rows;  ///< those that were not written while it went
   std::vector<fronts::Front> fronts;
   std::vector<std::vector<fracture::Passage>> passages;  ///< of each front, at its points
   RuptureOutlook rupture;
@@ -86,9 +83,10 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, Initia
                                                   Processes& processes = one_process());
 
 /// The event of a case, about to begin with a started stepper; see motion::EventRun.
+/// @param sinks  of its outputs
 motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
-                             motion::EventOutput* output = nullptr, motion::Observers more = {});
+                             const results::Sinks& sinks, motion::Observers more = {});
 
 /// The case, the steps and an event, without fronts yet. Collective.
 Result collect(const Problem& problem, const motion::TimeStepper& stepper, motion::Event event);
@@ -100,11 +98,9 @@ void analyse(Result& result, const InitialState& initial);
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early; event.end says which.
 /// @param started  by start_event
-/// @param output  takes samples and snapshots; without one the event keeps them
 /// @param more    further observers
 Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& started,
-                const motion::Monitor& monitor, motion::EventOutput* output = nullptr,
-                motion::Observers more = {});
+                const motion::Monitor& monitor, motion::Observers more = {});
 /// Starts the event as well, and leaves the initial state as it is.
 Result run_from(const Problem& problem, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution = {}, motion::Observers more = {});
@@ -133,10 +129,6 @@ inline constexpr const char* run_file = "run.json";
 inline constexpr const char* end_file = "sequence.state";
 /// What run.json is of a run, of a sequence.
 inline constexpr const char* sequence_file = "sequence.json";
-/// What the files of its rows hold. @param step_s  of its event
-results::RunFiles run_files(const Problem& problem, const InitialState& initial, double step_s);
-/// What a history of its interface holds.
-results::Table history_table(const Problem& problem, const std::vector<double>& x_m);
 /// What a case's fields.vtkhdf holds besides.
 results::SnapshotContents snapshot_contents(const Problem& problem, const SnapshotMesh& mesh);
 

@@ -66,6 +66,12 @@ bool stop(std::int64_t, std::int64_t total) {
   return total == 0;
 }
 
+/// Of rows that nobody reads.
+results::RowSink& sinks(const results::Output& /*output*/) {
+  static results::KeptRows rows;
+  return rows;
+}
+
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -100,14 +106,15 @@ std::string checkpoint_of(const input::Case& config) {
     const auto stepper = run::start_event(make_problem(config), initial);
     head.in_event = true;
     std::optional<motion::EventRun> event;
-    event.emplace(run::begin_event(make_problem(config), initial, *stepper, [&](std::int64_t, std::int64_t) {
+    const auto keep = [&](std::int64_t, std::int64_t) {
       checkpoints.keep(head, [&](results::OutputArchive& archive) {
         archive(initial);
         run::write_motion(archive, *stepper);
         archive(results::ResultStream::Extents{}, *event);
       });
       return false;
-    }));
+    };
+    event.emplace(run::begin_event(make_problem(config), initial, *stepper, keep, sinks));
     event->run();
   }
   auto content = content_of(scratch.dir() / file_name);
@@ -123,7 +130,7 @@ void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
     const auto loads = run::loads_of_event(make_problem(config), initial);
     const auto stepper = run::make_stepper(make_problem(config), initial);
     run::read_motion(&kept.body, *stepper, loads);
-    auto event = run::begin_event(make_problem(config), initial, *stepper, stop);
+    auto event = run::begin_event(make_problem(config), initial, *stepper, stop, sinks);
     results::ResultStream::Extents extents;
     kept.body(extents, event);
     event.require_restored();

@@ -256,7 +256,7 @@ TEST(Event, SnapshotsAndHistoryDoNotDisturbTheMotion) {
   const auto plain = run(config);
   config.output = {1e-6, {0, 20e-6, 60e-6}};
   const auto other = run(config);
-  EXPECT_EQ(other.event.snapshots.size(), 3U);
+  EXPECT_EQ(test::snapshots_of(other, coarse_state().n_nodes).size(), 3U);
   EXPECT_TRUE(std::ranges::equal(plain.event.record.onsets, other.event.record.onsets, {},
                                  &record::Onset::time_s, &record::Onset::time_s));
 }
@@ -310,7 +310,7 @@ TEST(Info, AgreesWithTheRun) {
     EXPECT_EQ(result.event.end, motion::EventEnd::end_time);
     EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
     EXPECT_EQ(info.n_cells, std::ssize(initial.mesh.cells));
-    EXPECT_EQ(info.n_interface, std::ssize(result.event.history.x_m));
+    EXPECT_EQ(info.n_interface, std::ssize(test::history_of(result).x_m));
     EXPECT_EQ(info.stable_step_s, result.stable_step_s);
     EXPECT_EQ(info.step_s, result.step_s);
     EXPECT_DOUBLE_EQ(info.step_s, 0.9 * info.stable_step_s);
@@ -392,7 +392,7 @@ TEST(PlainStepper, RunsACaseAsTheFastOneDoes) {
   const auto plain = test::run_case(config);
   EXPECT_EQ(plain.event.steps, fast.event.steps);
   EXPECT_EQ(plain.node_updates_per_step, fast.node_updates_per_step);
-  const auto &a = plain.event.history, &b = fast.event.history;
+  const auto a = test::history_of(plain), b = test::history_of(fast);
   ASSERT_EQ(a.slip_m.size(), b.slip_m.size());
   const double slip_m =
       std::abs(*std::ranges::max_element(b.slip_m, {}, [](double s) { return std::abs(s); }));
