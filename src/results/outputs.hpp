@@ -7,12 +7,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/message.hpp"
-#include "base/numbers.hpp"
 #include "motion/observer.hpp"
 #include "record/probes.hpp"
 #include "results/contents.hpp"
@@ -27,15 +27,18 @@ namespace slipfront::results {
 struct OutputSetup {
   Origin origin = {};
   double step_s = 0, end_s = 0;
-  double n_interface = 0, n_nodes = 0;          ///< of the interface, of the bodies; of forecasts about so many
-  std::vector<double> x_m = {};                 ///< of the interface nodes
+  double n_interface = 0, n_nodes = 0;  ///< of the interface, of the bodies; of forecasts about so many
+  std::vector<double> x_m = {};         ///< of the interface nodes
   std::vector<Description> law_states = {};
   double history_interval_s = 1;
   std::vector<record::ProbePlace> probes = {};
   double probe_interval_s = 1;
-  std::vector<double> snapshot_times_s = {};    ///< ascending
+  std::vector<double> snapshot_times_s = {};  ///< ascending
   bool snapshot_stress = false;
   Seam seam = {};
+  bool moment_rate = false;
+  std::vector<double> tributary_m = {};  ///< of the interface nodes
+  double shear_modulus_Pa = 0, c_S_m_per_s = 0;
   std::optional<solid::UniformStress> further_stress = {};  ///< of the probes, that displacements leave out
 };
 
@@ -48,7 +51,7 @@ struct Forecast {
 /// An output of an event: a file of rows, and the observer that puts them.
 struct Output {
   const char* file;
-  const char* name;  ///< in messages
+  const char* name;     ///< in messages
   Message (*remedy)();  ///< what to choose for less of it
   Forecast (*forecast)(const OutputSetup& setup);
   RowFormat (*format)(const OutputSetup& setup);
@@ -58,9 +61,9 @@ struct Output {
                                                 RowSink& rows);
 };
 
-extern const Output history_output, probe_output, snapshot_output;
+extern const Output history_output, probe_output, snapshot_output, moment_rate_output;
 /// All of them.
-inline constexpr std::array outputs = {&history_output, &probe_output, &snapshot_output};
+inline constexpr std::array outputs = {&history_output, &probe_output, &snapshot_output, &moment_rate_output};
 
 /// Rows at an interval, from time 0 to the end.
 double rows_at(const OutputSetup& setup, double interval_s);

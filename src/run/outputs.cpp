@@ -10,6 +10,7 @@ results::Origin origin_of(const Problem& problem) {
 }
 
 results::OutputSetup output_setup(const Problem& problem, double step_s, double n_interface, double n_nodes) {
+  const auto& material = problem.above().material;
   results::OutputSetup setup{.origin = origin_of(problem),
                              .step_s = step_s,
                              .end_s = problem.time.end_s,
@@ -20,6 +21,9 @@ results::OutputSetup output_setup(const Problem& problem, double step_s, double 
                              .probe_interval_s = problem.probe_interval_s,
                              .snapshot_times_s = snapshot_plan(problem, step_s).times_s,
                              .snapshot_stress = problem.output.snapshot_stress,
+                             .moment_rate = problem.output.moment_rate,
+                             .shear_modulus_Pa = solid::shear_modulus_Pa(material),
+                             .c_S_m_per_s = solid::shear_speed_m_per_s(material),
                              .further_stress = prescribed_stress(problem)};
   for (const auto& state : problem.friction.law.states())
     setup.law_states.push_back({state.name, state.unit, state.description});
@@ -31,6 +35,7 @@ results::OutputSetup output_setup(const Problem& problem, const InitialState& in
   auto setup =
       output_setup(problem, step_s, static_cast<double>(x_m.size()), static_cast<double>(initial.n_nodes));
   setup.x_m = x_m;
+  setup.tributary_m = initial.tributary_m;
   setup.seam = results::seam(initial.mesh);
   if (initial.base) {
     const auto below = results::seam(*initial.base, static_cast<std::size_t>(n_nodes_of(initial.mesh)));

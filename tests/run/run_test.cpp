@@ -251,6 +251,22 @@ TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
   EXPECT_TRUE(result.fronts.empty());
 }
 
+TEST(Event, MomentRateSumsUpToThePotencyOfItsSlip) {
+  auto config = coarse_case();
+  config.output.moment_rate = true;
+  const auto result = run(config);
+  const auto& slip_m = result.event.interface_at_end.slip_m;
+  double potency_m2 = 0;
+  for (std::size_t k = 0; k < slip_m.size(); ++k) potency_m2 += slip_m[k] * coarse_state().tributary_m[k];
+  const auto& rows = result.rows.at(results::moment_rate_output.file).values;
+  for (const std::size_t column : {1, 3, 4}) {
+    double sum_m2_per_s = 0;
+    for (std::size_t k = column; k < rows.size(); k += 5) sum_m2_per_s += rows[k];
+    const double interval_s = rows[5] - rows[0];
+    EXPECT_NEAR(sum_m2_per_s * interval_s, potency_m2, 1e-9 * potency_m2);  // that of times as differences
+  }
+}
+
 TEST(Event, SnapshotsAndHistoryDoNotDisturbTheMotion) {
   auto config = coarse_case();
   const auto plain = run(config);

@@ -65,10 +65,11 @@ const Output snapshot_output = {
         },
     .forecast =
         [](const OutputSetup& setup) {
-          constexpr double of_mesh = 65;    // of a node: place, cell
-          constexpr double of_motion = 32;  // of a node: u and v
+          constexpr double of_mesh = 65;                                          // of a node: place, cell
+          constexpr double of_motion = 32;                                        // of a node: u and v
+          constexpr double of_tensors = tensor_values_per_cell * sizeof(double);  // of a cell
           const auto n = static_cast<double>(setup.snapshot_times_s.size());
-          const double of_stress = setup.snapshot_stress ? tensor_values_per_cell * sizeof(double) : 0;
+          const double of_stress = setup.snapshot_stress ? of_tensors : 0;
           return Forecast{n, n == 0 ? 0 : setup.n_nodes * (of_mesh + n * (of_motion + of_stress))};
         },
     .format =
