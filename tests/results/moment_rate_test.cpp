@@ -27,7 +27,7 @@ class MomentRate : public ::testing::Test {
       setup_.x_m.push_back(length_m * k / (n - 1));
       setup_.tributary_m.push_back(length_m / (n - 1) * (k == 0 || k == n - 1 ? 0.5 : 1));
     }
-    const auto mesh = test::make_plate(0.1, 0.05, 25e-3, mesh::Corner::none);
+    const auto mesh = test::make_plate(0.1, 0.05, 5e-3, mesh::Corner::none);
     stepper_.emplace(mesh, solid::Material{}, interface::ContactModel{interface::VelocityWeakening{}},
                      motion::TimeStepping{});
   }

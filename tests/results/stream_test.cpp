@@ -86,7 +86,7 @@ TEST_F(Stream, KeepsAllItWasGiven) {
   EXPECT_THAT(test::names_below(folder_.path()), ElementsAre(history_file));
   const auto extents = give(stream, 0, n_rows);
   EXPECT_EQ(extents.front().bytes,
-            files().front().head_bytes() + n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
+            files().front().head_bytes + n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
   finish(stream, folder_.path());
   EXPECT_TRUE(equal(test::read_history(folder_ / history_file), rows(n_rows)));
   EXPECT_EQ(std::filesystem::file_size(folder_ / history_file), extents.front().bytes);
