@@ -13,6 +13,7 @@ namespace slipfront::verification {
 struct Rupture {
   motion::Event event;
   std::vector<fronts::Front> fronts;
+  record::History history;  ///< without places
 };
 
 /// Runs a stepper that has been started to the end of its time.

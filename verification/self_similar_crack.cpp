@@ -103,7 +103,8 @@ Found run(double slope, double h_m, double v_m_per_s) {
   motion::Stepper stepper(motion::BodySource{mesh, pmma}, motion::BodySource{mesh, pmma}, contact, time);
   const auto state = statics::prestressed(mesh, {x_m, t, p}, &mesh);
   stepper.start(state, 0, loads);
-  const auto [event, fronts] = run_rupture(stepper, state, time, pmma, mu_s, 0.5 * h_m / v_m_per_s, 1);
+  const auto [event, fronts, history] =
+      run_rupture(stepper, state, time, pmma, mu_s, 0.5 * h_m / v_m_per_s, 1);
   std::vector<double> v, zone, work, G_slip;
   for (const auto& front : fronts) {
     if (front.direction < 0) continue;

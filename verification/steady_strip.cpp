@@ -156,7 +156,7 @@ Found run(const Strip& strip) {
       is_two ? motion::Stepper(body, body, contact, time) : motion::Stepper(mesh, material, contact, time);
   const auto state = statics::prestressed(mesh, {x_m, t, p}, is_two ? &mesh : nullptr);
   stepper.start(state, 0, loads);
-  const auto [event, fronts] =
+  const auto [event, fronts, history] =
       run_rupture(stepper, state, time, material, mu_s, 0.05 * height_m / v, 0.25 * height_m / v);
 
   Found found;
@@ -195,7 +195,6 @@ Found run(const Strip& strip) {
   // A linear cohesive zone has, far from it, the field of a tip that is this far behind its head.
   const double shift = found.zone / (3 - strip.slip_exponent());
   const double unit_m = std::sqrt(fracture::slip_squared_per_G_and_distance(strip.bodies, v) * G * height_m);
-  const auto& history = event.history;
   for (std::size_t row = 0; row < history.time_s.size(); ++row) {
     const double tip_m = tip_offset_m + v * history.time_s[row];
     if (!strip.is_read(tip_m)) continue;

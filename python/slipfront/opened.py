@@ -408,8 +408,8 @@ class OpenRun(Opened):
     @cached_property
     def fields(self) -> Fields | None:
         """Mesh and times of the snapshots, whose speeds are read step by step. None of a run without any."""
-        file = self.folder / "fields.vtkhdf"
-        return read_fields(file) if belongs(file) and not is_open(result_file(file)) else None
+        file = self._finished("fields.vtkhdf")
+        return None if file is None else read_fields(file)
 
     @cached_property
     def snapshots(self) -> xr.Dataset | None:
@@ -437,10 +437,9 @@ class OpenRun(Opened):
     def probes(self) -> xr.Dataset | None:
         """probes.h5 over time_s and probe, by its name, with the places x_m and y_m: displacement, velocity,
         strain, stress; see absolute_stress. None of a run without probes."""
-        file = self.folder / "probes.h5"
-        if not belongs(file) or is_open(result_file(file)):
+        file = self._finished("probes.h5")
+        if file is None:
             return None
-        file = result_file(file)
         with open_hdf5(file) as hdf5:
             require("name" in hdf5, file, "no data set 'name'")
             names = [str(name) for name in hdf5["name"].asstr()[()]]
@@ -454,6 +453,21 @@ class OpenRun(Opened):
         coordinates = variables(("probe",), {"probe": names, "x_m": x_m, "y_m": y_m})
         coordinates |= variables(("time_s",), {"time_s": time_s})
         return xr.Dataset(records, coordinates, self._attributes())
+
+    @cached_property
+    def moment_rate(self) -> xr.Dataset | None:
+        """moment_rate.h5 over time_s: potency rate and moment rate, and the potency rates that far receivers
+        of S waves see along the interface. None of a run without output.moment_rate."""
+        file = self._finished("moment_rate.h5")
+        if file is None:
+            return None
+        with open_hdf5(file) as hdf5:
+            columns = {
+                name: xr.Variable(("time_s",), found[()], attributes_of(found, name))
+                for name, found in hdf5.items()
+                if found.ndim == 1 and found.shape == hdf5["time_s"].shape and name != "row_value"
+            }
+        return xr.Dataset(columns, attrs=self._attributes())
 
     def absolute_stress(self, records: xr.Dataset | None) -> xr.Dataset:
         """The whole stress of `probes` or `snapshots`, Pa, positive in tension: as it is recorded, but NaN
@@ -476,6 +490,11 @@ class OpenRun(Opened):
                 attrs | {"long_name": f"{long_name}, absolute"}
             )
         return xr.Dataset(whole, attrs=records.attrs)
+
+    def _finished(self, name: str) -> Path | None:
+        """A file of rows; None where the run has none, or goes on."""
+        file = self.folder / name
+        return result_file(file) if belongs(file) and not is_open(result_file(file)) else None
 
     def _from_table(self, file: Path, dim: str, finite: bool = True) -> xr.Dataset:
         table = read_table(result_file(file), growing=self.place.growing)

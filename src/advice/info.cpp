@@ -184,7 +184,7 @@ constexpr double steps_per_look = 50;
 double looks_of(const Problem& problem, const Needs& needs) {
   const auto steps = static_cast<double>(needs.steps);
   return std::min(steps, steps / steps_per_look + problem.time.end_s / problem.output.energy_interval_s +
-                             needs.snapshots + 1);
+                             needs.of(results::snapshot_output).n_rows + 1);
 }
 
 /// Node updates/s of this machine, from a few steps: under the mean pressure, with half of the interface
@@ -220,7 +220,8 @@ double measured_rate_per_s(const Problem& problem, const Timed& timed, motion::T
 double expected_rest_s(const Info& info) {
   constexpr double s_per_node = 0.25e-6, s_per_byte = 2.4e-9;
   return s_per_node * static_cast<double>(info.n_nodes) +
-         s_per_byte * (info.needs.history_bytes + info.needs.snapshot_bytes);
+         s_per_byte *
+             (info.needs.of(results::history_output).bytes + info.needs.of(results::snapshot_output).bytes);
 }
 
 double expected_statics_s(const Info& info) {
@@ -285,9 +286,9 @@ Info::Shared shared_by(const Problem& problem, const setup::Meshes& meshes, cons
   const double column_s = info.node_updates / partition.n_columns() / info.node_updates_per_s;
   shared.bytes_per_step =
       halo_columns * n_nodes / partition.n_columns() * sent_bytes_per_node / partition.steps_per_exchange;
-  const double passed_bytes =
-      0.5 * info.needs.history_bytes +
-      (info.needs.snapshots + (n_processes > 1 ? 1 : 0)) * sent_bytes_per_node * n_nodes;
+  const double passed_bytes = 0.5 * info.needs.of(results::history_output).bytes +
+                              (info.needs.of(results::snapshot_output).n_rows + (n_processes > 1 ? 1 : 0)) *
+                                  sent_bytes_per_node * n_nodes;
   const double own_s = own_columns * column_s;
   const double event_s = own_s + halo_columns * column_s + passed_bytes * s_per_byte;
   shared.efficiency = own_s / event_s;

@@ -13,12 +13,9 @@
 #include "motion/every.hpp"
 #include "motion/step_plan.hpp"
 #include "record/energies.hpp"
-#include "record/probes.hpp"
-#include "record/record.hpp"
 #include "record/sequence.hpp"
-#include "results/snapshots.hpp"
 #include "setup/initial_state.hpp"
-#include "setup/snapshot_plan.hpp"
+#include "setup/outputs.hpp"
 #include "solid/operator.hpp"
 #include "stability/rupture.hpp"
 #include "statics/plate_solver.hpp"
@@ -59,11 +56,9 @@ constexpr double mesh_of_root = 32;
 constexpr double in_relief = 1600;
 
 // Bytes on disk of a node.
-constexpr double of_snapshot_mesh = 65;  ///< place, cell
-constexpr double in_snapshot = 32;       ///< u and v
-constexpr double in_checkpoint = 33;     ///< u and what moves it, 32
-constexpr double checkpoints = 3;        ///< two, and one that is written
-constexpr double in_text = 20;           ///< of a number
+constexpr double in_checkpoint = 33;  ///< u and what moves it, 32
+constexpr double checkpoints = 3;     ///< two, and one that is written
+constexpr double in_text = 20;        ///< of a number
 
 // Seconds, of a processor of 2023 with two threads, measured over 2e4 to 5e7 unknowns.
 constexpr double s_of_large_fronts = 1.6e-9;  ///< times n^1.5
@@ -112,10 +107,6 @@ double critical_shear_m(const Problem& problem) {
   } catch (const UserError&) {  // nothing coarse fits, or its edges give way first
   }
   return mu_s * nominal_pressure_Pa(problem) * compliance_m_per_Pa;
-}
-
-double rows_of(double end_s, double interval_s, double step_s) {
-  return std::floor(end_s / std::max(interval_s, step_s)) + 1;
 }
 
 double record_bytes(const Problem& problem, double n_interface) {
@@ -311,7 +302,6 @@ double statics_s(statics::StaticSolver solver, double n) {
 }
 
 Needs needs(const Problem& problem, const Size& size, const Holder& holder) {
-  const auto& output = problem.output;
   const double end_s = problem.time.end_s;
   Needs n;
   n.steps = countable(motion::steps_to(end_s, size.step_s), Message("{} = {:g}", Key("time.end_s"), end_s),
@@ -322,45 +312,40 @@ Needs needs(const Problem& problem, const Size& size, const Holder& holder) {
                   Message("the ramp with {} = {:g} m/s", Key("loading.shear_speed_m_per_s"),
                           problem.loading.shear_speed_m_per_s),
                   Message("a higher speed, or {} = direct", Key("loading.method")));
-  n.history_rows = rows_of(end_s, output.history_interval_s, size.step_s);
-  n.snapshots = static_cast<double>(setup::snapshot_plan(problem, size.step_s).times_s.size());
-  const double energy_rows = rows_of(end_s, output.energy_interval_s, size.step_s) + 1;
+  const auto setup = setup::output_setup(problem, size.step_s, size.n_interface, size.n_nodes);
+  for (std::size_t k = 0; k < n.of_outputs.size(); ++k)
+    n.of_outputs[k] = results::outputs[k]->forecast(setup);
+  const double energy_rows = rows_at(setup, problem.output.energy_interval_s) + 1;
 
   n.memory = memory(problem, size, holder, energy_rows);
   n.statics_bytes = statics_bytes_of(problem, size, holder);
 
-  n.history_bytes = n.history_rows * number *
-                    static_cast<double>(record::history_row_values(static_cast<std::size_t>(size.n_interface),
-                                                                   problem.friction.law.states().size()));
   if (problem.is_slow()) {
     n.slow_steps = slow_steps_of(problem);
     // With those in which rates and states change then.
     const double most_rows = 2.0 * record::all_slow_rows;
+    const auto& history = n.of(results::history_output);
     n.slow_bytes =
-        std::min(n.slow_steps / record::steps_per_slow_row, most_rows) * n.history_bytes / n.history_rows;
+        std::min(n.slow_steps / record::steps_per_slow_row, most_rows) * history.bytes / history.n_rows;
   }
-  const double of_stress = output.snapshot_stress ? results::tensor_values_per_cell * number : 0;
-  if (n.snapshots > 0)
-    n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (in_snapshot + of_stress));
   const double in_one = problem.is_plain() ? in_plain_checkpoint : in_checkpoint;
   n.checkpoint_bytes = checkpoints * (in_one * size.n_nodes + record_bytes(problem, size.n_interface));
-  if (const auto n_probes = problem.probes.size(); n_probes > 0)
-    n.probe_bytes = rows_of(end_s, problem.probe_interval_s, size.step_s) * number *
-                    static_cast<double>(record::probe_row_values(n_probes));
   n.energy_bytes = energy_rows * in_text * sizeof(record::Energies) / number;
   return n;
 }
 
+const results::Forecast& Needs::of(const results::Output& output) const {
+  return of_outputs[static_cast<std::size_t>(std::ranges::find(results::outputs, &output) -
+                                             results::outputs.begin())];
+}
+
 Budget Needs::disk() const {
-  return {{"the history", history_bytes, Message("a larger {}", Key("output.history_interval_s"))},
-          {"slow slip", slow_bytes, larger_elements()},
-          {"snapshots", snapshot_bytes,
-           Message("fewer {}, a longer {:leaf}, {:leaf} = false", Key("output.snapshot_times_s"),
-                   Key("output.snapshot_interval_s"), Key("output.snapshot_stress"))},
-          {"checkpoints", checkpoint_bytes, larger_elements()},
-          {"probes", probe_bytes,
-           Message("fewer {}, or a larger {:leaf}", Key("probes.x_m"), Key("probes.interval_s"))},
-          {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
+  Budget budget = {{"slow slip", slow_bytes, larger_elements()},
+                   {"checkpoints", checkpoint_bytes, larger_elements()},
+                   {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
+  for (std::size_t k = 0; k < of_outputs.size(); ++k)
+    budget.push_back({results::outputs[k]->name, of_outputs[k].bytes, results::outputs[k]->remedy()});
+  return budget;
 }
 
 void require_memory_fits(const Problem& problem, const Processes& processes) {

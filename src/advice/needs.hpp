@@ -2,12 +2,14 @@
 // What a run takes of memory, disk and time, predicted to some 30 %.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 
 #include "base/budget.hpp"
 #include "problem/problem.hpp"
 #include "processes/processes.hpp"
+#include "results/outputs.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::advice {
@@ -37,12 +39,12 @@ struct Needs {
   std::int64_t steps = 0;       ///< to time.end_s
   std::int64_t ramp_steps = 0;  ///< where loading.method is ramp
   double slow_steps = 0;        ///< of slow slip to the end of the loading, or to a first event
-  double history_rows = 0, snapshots = 0;
-  Budget memory;             ///< of the statics or of the event, whichever takes more
-  double statics_bytes = 0;  ///< of memory, while the statics are solved
+  Budget memory;                ///< of the statics or of the event, whichever takes more
+  double statics_bytes = 0;     ///< of memory, while the statics are solved
   /// On disk, with what lies there beside the results.
-  double slow_bytes = 0;
-  double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, probe_bytes = 0, energy_bytes = 0;
+  double slow_bytes = 0, checkpoint_bytes = 0, energy_bytes = 0;
+  std::array<results::Forecast, results::outputs.size()> of_outputs;  ///< in their order
+  const results::Forecast& of(const results::Output& output) const;
 
   double memory_bytes() const { return total_bytes(memory); }
   Budget disk() const;

@@ -100,11 +100,12 @@ void add_costs(const advice::Info& info, Listing& list) {
   list.add("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
                                  info.solver_bytes * 1e-9, statics));
   const auto& n = info.needs;
+  const auto &history = n.of(results::history_output), &snapshots = n.of(results::snapshot_output);
   list.add("disk",
            fmt::format(
                "{:.3g} GB while it runs: {} rows of history {:.3g}, {} snapshots {:.3g}, checkpoints {:.3g}",
-               n.disk_bytes() * 1e-9, n.history_rows, n.history_bytes * 1e-9, n.snapshots,
-               n.snapshot_bytes * 1e-9, n.checkpoint_bytes * 1e-9));
+               n.disk_bytes() * 1e-9, history.n_rows, history.bytes * 1e-9, snapshots.n_rows,
+               snapshots.bytes * 1e-9, n.checkpoint_bytes * 1e-9));
   list.add("node updates",
            fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
   list.add("expected time", fmt::format("{:.2g} s", info.expected_s));

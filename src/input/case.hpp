@@ -101,6 +101,7 @@ struct Output {
   double snapshot_interval_s = infinity;
   bool snapshot_stress = true;       ///< strain and stress of the cells with them
   double energy_interval_s = 10e-6;  ///< spacing of the rows of energy.csv
+  bool moment_rate = false;          ///< whether there is a moment_rate.h5
 };
 
 /// Places at which motion, strain and stress are recorded in probes.h5.

@@ -752,6 +752,8 @@ void add_evaluation(Entries& all) {
              "strain and stress at the cells' centres with them, which doubles the file");
   output.add("energy_interval_s", &Output::energy_interval_s, above(0),
              "spacing of the rows of energy.csv; one step where that is longer");
+  output.add("moment_rate", &Output::moment_rate,
+             "potency and moment rate in moment_rate.h5, at the interval of the history, see files.md");
   Table probes(all, "probes", &Case::probes, Stage::evaluation);
   probes.add("x_m", &Probes::x_m, any(),
              "places at which motion, strain and stress are recorded in probes.h5, see files.md: along the "

@@ -7,9 +7,6 @@
 #include "base/error.hpp"
 #include "motion/observers/blow_up_monitor.hpp"
 #include "motion/observers/end_time.hpp"
-#include "motion/observers/history_rows.hpp"
-#include "motion/observers/probe_rows.hpp"
-#include "motion/observers/snapshots.hpp"
 
 namespace slipfront::motion {
 
@@ -27,31 +24,23 @@ std::int64_t steps_of(const TimeStepping& time, double step_s) {
 
 }  // namespace
 
-EventRun::EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor& monitor, EventOutput* output,
-                   Observers more)
+EventRun::EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor& monitor, Observers more)
     : stepper_(stepper),
       quiet_slip_rate_m_per_s_(rest_slip_fraction *
                                slip_rate_scale_m_per_s(setup.state, setup.mu_s, setup.waves)),
-      kept_(output != nullptr ? nullptr : std::make_unique<KeptOutput>()),
       run_(stepper, {setup.state, setup.mu_s, setup.halo, quiet_slip_rate_m_per_s_},
-           setup.state.tractions.x_m,
-           observers(setup, monitor, output != nullptr ? output : kept_.get(), std::move(more))) {}
+           setup.state.tractions.x_m, observers(setup, monitor, std::move(more))) {}
 
-Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output,
-                              Observers more) {
-  const auto& [state, mu_s, waves, loads_settle_s, time, sampling, halo, stop_window, slow_m_per_s] = setup;
+Observers EventRun::observers(const EventSetup& setup, const Monitor& monitor, Observers more) {
+  const auto& [state, mu_s, waves, loads_settle_s, time, tip_slip_interval_s, energy_interval_s, halo,
+               stop_window, slow_m_per_s] = setup;
   const double step_s = stepper_.step_s();
   const auto n_steps = steps_of(time, step_s);
   const auto start = stepper_.energies();
   Observers list;
   list.push_back(std::make_unique<Onsets>(state.tractions.x_m, halo));
-  list.push_back(std::make_unique<HistoryRows>(sampling.history_interval_s, *output));
-  list.push_back(std::make_unique<TipSlips>(state, sampling.history_interval_s));
-  if (!stepper_.probes().empty())
-    list.push_back(
-        std::make_unique<ProbeRows>(stepper_, sampling.probe_interval_s, sampling.further_stress, *output));
-  list.push_back(std::make_unique<EnergyRows>(start, sampling.energy_interval_s, step_s, time.end_s));
-  list.push_back(std::make_unique<Snapshots>(sampling.snapshot_times_s, *output));
+  list.push_back(std::make_unique<TipSlips>(state, tip_slip_interval_s));
+  list.push_back(std::make_unique<EnergyRows>(start, energy_interval_s, step_s, time.end_s));
   list.push_back(std::make_unique<BlowUpMonitor>(stepper_, waves.c_L_m_per_s, time.precision, start));
   if (stop_window)
     list.push_back(std::make_unique<StickCriterion>(
@@ -86,12 +75,6 @@ Event EventRun::run() {
   event.tip_slip = tip_slip();
   event.interface_at_end = stepper_.interface_row();
   event.energies = run_.get<EnergyRows>().take_rows();
-  if (kept_) {
-    event.history = std::move(kept_->history);
-    event.snapshots = std::move(kept_->snapshots);
-    event.probes = std::move(kept_->probes);
-  }
-  event.history.x_m = event.record.x_m;
   return event;
 }
 

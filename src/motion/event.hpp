@@ -10,7 +10,6 @@
 #include "base/per_node.hpp"
 #include "motion/observed_run.hpp"
 #include "motion/observers/energy_rows.hpp"
-#include "motion/observers/event_output.hpp"
 #include "motion/observers/onsets.hpp"
 #include "motion/observers/progress.hpp"
 #include "motion/observers/rest_criterion.hpp"
@@ -19,19 +18,9 @@
 #include "record/breakdown.hpp"
 #include "record/record.hpp"
 #include "record/tip_slip.hpp"
-#include "solid/element.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::motion {
-
-/// What to keep of an event besides its onsets.
-struct Sampling {
-  double history_interval_s = 0.5e-6;
-  double energy_interval_s = 20e-6;
-  std::vector<double> snapshot_times_s;  ///< ascending
-  double probe_interval_s = 0.5e-6;      ///< of the stepper's probes; one step where that is longer
-  std::optional<solid::UniformStress> further_stress = {};  ///< of the probes, that displacements leave out
-};
 
 /// A slip event as it was computed.
 struct Event {
@@ -44,12 +33,8 @@ struct Event {
   record::Breakdown breakdown;
   record::TipSlip tip_slip;
   record::History interface_at_end;        ///< see TimeStepper::interface_row
-  record::History history;                 ///< without an output
-  std::vector<Snapshot> snapshots;         ///< without an output
-  record::ProbeRecord probes;              ///< without an output
   std::vector<record::Energies> energies;  ///< at the start, at the given interval, and at the end
 
-  /// Without what an output would take.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(end, reason, steps, time_s, quiet_slip_rate_m_per_s, record, breakdown, tip_slip, energies);
@@ -63,7 +48,7 @@ struct EventSetup {
   Waves waves;
   double loads_settle_s;  ///< time from which the loads stay
   TimeStepping time;
-  Sampling sampling;
+  double tip_slip_interval_s = 0.5e-6, energy_interval_s = 20e-6;
   int halo = 0;  ///< nodes on each side whose tractions are kept at an onset
   /// The event ends when nodes between these places stick, see StickCriterion; none: see RestCriterion.
   std::optional<Interval> stop_window = {};
@@ -76,10 +61,8 @@ struct EventSetup {
 class EventRun {
  public:
   /// @param monitor  may interrupt it, for good; what is kept meanwhile can go on
-  /// @param output   takes samples and snapshots; without one the event keeps them all
-  /// @param more     further observers
-  EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor& monitor,
-           EventOutput* output = nullptr, Observers more = {});
+  /// @param more     further observers, of outputs among them
+  EventRun(TimeStepper& stepper, const EventSetup& setup, const Monitor& monitor, Observers more = {});
 
   /// To the end.
   Event run();
@@ -89,18 +72,17 @@ class EventRun {
   record::SlipRecord record() const { return run_.get<Onsets>().record_until(stepper_.time_s()); }
   const record::TipSlip& tip_slip() const { return run_.get<TipSlips>().record(); }
 
-  /// All that changes while the monitor is asked, but for the stepper and what an output would take.
+  /// All that changes while the monitor is asked, but for the stepper.
   void serialize(StateArchive& archive) { run_.archive(archive); }
   /// After that was read, with the stepper's motion restored.
   /// @throws StateError where that does not come to what was read
   void require_restored();
 
  private:
-  Observers observers(const EventSetup& setup, const Monitor& monitor, EventOutput* output, Observers more);
+  Observers observers(const EventSetup& setup, const Monitor& monitor, Observers more);
 
   TimeStepper& stepper_;
   double quiet_slip_rate_m_per_s_;
-  std::unique_ptr<KeptOutput> kept_;  ///< without an output
   ObservedRun run_;
 };
 

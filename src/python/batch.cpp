@@ -78,13 +78,20 @@ BatchEvent event_of(const run::Result& result, const InitialState& initial) {
     e.onset_s.push_back(onset.time_s);
   }
   if (!result.event.energies.empty()) e.trigger_work_J_per_m = result.event.energies.back().trigger_work;
-  if (result.event.snapshots.empty()) return e;
+  const auto kept = result.rows.find(results::snapshot_output.file);
+  if (kept == result.rows.end()) return e;
   e.node_x_m = initial.mesh.x_m;
   e.node_y_m = initial.mesh.y_m;
-  const auto n = static_cast<std::ptrdiff_t>(e.node_x_m.size());
-  const auto of_plate = [n](const auto& values) { return std::vector(values.begin(), values.begin() + n); };
-  for (const auto& snapshot : result.event.snapshots)
-    e.snapshots.push_back({snapshot.time_s, of_plate(snapshot.v_m_per_s.x), of_plate(snapshot.v_m_per_s.y)});
+  const auto n = static_cast<std::ptrdiff_t>(e.node_x_m.size()), n_all = std::ptrdiff_t{initial.n_nodes};
+  const auto& rows = kept->second.values;
+  for (auto row = rows.begin(); row != rows.end(); row += 1 + motion::n_motion_components * n_all) {
+    const auto of_plate = [&](motion::MotionComponent component) {
+      const auto first = row + 1 + static_cast<int>(component) * n_all;
+      return std::vector(first, first + n);
+    };
+    e.snapshots.push_back(
+        {*row, of_plate(motion::MotionComponent::v_x), of_plate(motion::MotionComponent::v_y)});
+  }
   return e;
 }
 

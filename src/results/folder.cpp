@@ -21,7 +21,7 @@
 #include "base/caller.hpp"
 #include "base/error.hpp"
 #include "files/text.hpp"
-#include "results/stream.hpp"
+#include "results/outputs.hpp"
 
 namespace slipfront::results {
 namespace {
@@ -34,9 +34,13 @@ constexpr const char* state_name = "state";
 constexpr const char* kind_name = "kind";
 
 /// Names that a run's results have.
-constexpr std::array names_of_run = {"case.resolved.toml", "run.json",   "interface.h5", "fronts.csv",
-                                     "fracture.csv",       "static.csv", "energy.csv",   "fields.vtkhdf",
-                                     "sequence.json",      "events.csv", "loading.csv",  "sequence.state"};
+std::vector<const char*> names_of_run() {
+  std::vector<const char*> names = {"case.resolved.toml", "run.json",      "fronts.csv",    "fracture.csv",
+                                    "static.csv",         "energy.csv",    "sequence.json", "events.csv",
+                                    "loading.csv",        "sequence.state"};
+  for (const auto* output : outputs) names.push_back(output->file);
+  return names;
+}
 /// Folders of a sequence: one for each event, see event_folder, and one for the slow slip before it, which
 /// has but a history.
 constexpr const char* events_name = "events";
@@ -161,11 +165,11 @@ std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = ""
     if (is_inner && path.filename() == files::checksum_list) add_set_in(path.parent_path());
   }
   if (listed.empty() && holds_run(dir / prefix)) {
-    for (const char* name : names_of_run) names.insert(prefix + name);
+    for (const char* name : names_of_run()) names.insert(prefix + name);
     for (const auto& name : numbers_in(dir / prefix / events_name))
       add_set_in(fs::path(prefix) / events_name / name);
     for (const auto& name : numbers_in(dir / prefix / slow_name))
-      names.insert((fs::path(prefix) / slow_name / name / history_file).string());
+      names.insert((fs::path(prefix) / slow_name / name / history_output.file).string());
   }
   if (!names.empty()) names.insert(prefix + files::checksum_list);
   return names;
@@ -353,7 +357,7 @@ void ResultFolder::make(const ResultFolder* within) {
   if (error) throw_unusable(dir_, "created", error.value());
   outermost_made_ = outermost;
   if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
-  auto names = std::vector<const char*>(names_of_run.begin(), names_of_run.end());
+  auto names = names_of_run();
   names.push_back(files::checksum_list);
   for (const char* name : names)
     if (files::is_folder(dir_ / name))
@@ -423,7 +427,7 @@ void ResultFolder::require_empty(bool overwrite, bool resumes) const {
 
 void ResultFolder::require_room(std::int64_t n_events) const {
   const auto earlier = set_of(dir_);
-  for (const char* name : names_of_run) require_of_set(earlier, dir_, name, "");
+  for (const char* name : names_of_run()) require_of_set(earlier, dir_, name, "");
   if (n_events == 0) return;
   for (const auto& [folder, most] : {std::pair{events_name, n_events}, {slow_name, n_events + 1}}) {
     require_folder_or_nothing(dir_ / folder, "");
@@ -431,7 +435,7 @@ void ResultFolder::require_room(std::int64_t n_events) const {
       if (name.size() > 9 || std::stoll(name) > most) continue;
       const auto of_event = fs::path(folder) / name;
       require_folder_or_nothing(dir_ / of_event, "");
-      for (const char* file : names_of_run) require_of_set(earlier, dir_, of_event / file, "");
+      for (const char* file : names_of_run()) require_of_set(earlier, dir_, of_event / file, "");
       require_of_set(earlier, dir_, of_event / files::checksum_list, "");
     }
   }

@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "files/files.hpp"
 #include "results/hdf5.hpp"
-#include "results/rows.hpp"
+#include "results/outputs.hpp"
 #include "solid/element.hpp"
 
 namespace slipfront::results {
@@ -260,13 +260,16 @@ std::uint64_t place_of(const Layout& layout, const std::string& name, std::size_
 
 }  // namespace
 
-std::uint64_t SnapshotRows::head_bytes() const {
+RowFormat snapshot_format(const Origin& origin, std::size_t n_snapshots, std::size_t n_nodes) {
   constexpr std::size_t data_sets_of_steps = 7 + tensor_values_per_cell;
-  return results::head_bytes(origin, sizeof(std::int64_t) * data_sets_of_steps * n_snapshots);
+  return {.file = snapshot_output.file,
+          .head_bytes = head_bytes(origin, sizeof(std::int64_t) * data_sets_of_steps * n_snapshots),
+          .names = {"time", "u_x_m", "u_y_m", "v_x_m_per_s", "v_y_m_per_s"},
+          .n_places = n_nodes};
 }
 
-std::vector<std::pair<std::size_t, std::size_t>> seam(const mesh::Mesh& mesh, std::size_t first) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+Seam seam(const mesh::Mesh& mesh, std::size_t first) {
+  Seam pairs;
   if (mesh.period_m == 0) return pairs;
   for (const auto& grid : mesh::blocks(mesh))
     for (int j = 0; j <= grid.rows; ++j) {
@@ -277,6 +280,16 @@ std::vector<std::pair<std::size_t, std::size_t>> seam(const mesh::Mesh& mesh, st
   return pairs;
 }
 
+void close_seam(std::span<double> values, std::size_t place, std::size_t n_nodes, const Seam& seam) {
+  for (std::size_t first = 0; first < motion::n_motion_components * n_nodes; first += n_nodes) {
+    auto pair = std::ranges::lower_bound(seam, place - std::min(place, first), {}, &Seam::value_type::second);
+    for (; pair != seam.end() && first + pair->second < place + values.size(); ++pair) {
+      const auto right = first + pair->second - place;
+      values[right] = values[right - (pair->second - pair->first)];
+    }
+  }
+}
+
 void finish_snapshots(const std::filesystem::path& path, const mesh::Slabs& mesh,
                       const SnapshotContents& contents, const Writer& writer) {
   SLIPFRONT_ASSERT(contents.bodies.empty() || contents.bodies.back().end == mesh.n_cells,
@@ -285,7 +298,7 @@ void finish_snapshots(const std::filesystem::path& path, const mesh::Slabs& mesh
   std::optional<Layout> layout;
   std::size_t n_steps = 0;
   writer.together([&] {
-    const auto row_values = SnapshotRows{.n_nodes = mesh.n_nodes}.row_values();
+    const auto row_values = snapshot_format({}, 0, mesh.n_nodes).row_values();
     reader.emplace(path, row_values);
     n_steps = reader->n_rows();
     const hdf5::Rows rows{rows_name, n_steps, row_values};

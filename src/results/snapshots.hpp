@@ -5,28 +5,26 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "mesh/slabs.hpp"
 #include "motion/time_stepper.hpp"
 #include "results/contents.hpp"
+#include "results/rows.hpp"
 
 namespace slipfront::results {
 
-/// Rows of a fields.vtkhdf (rows.hpp): the time, u_x, u_y, v_x and v_y [nodes].
-struct SnapshotRows {
-  Origin origin = {};
-  std::size_t n_snapshots = 0;  ///< for which the head has room
-  std::size_t n_nodes = 0;
-  /// Nodes of the left edge of a periodic plate, and of the right one, which are given their motion.
-  std::vector<std::pair<std::size_t, std::size_t>> seam = {};
-
-  std::size_t row_values() const { return 1 + motion::n_motion_components * n_nodes; }
-  std::uint64_t head_bytes() const;
-};
-/// The pairs of a mesh whose nodes are numbered from `first` on.
-std::vector<std::pair<std::size_t, std::size_t>> seam(const mesh::Mesh& mesh, std::size_t first = 0);
+/// Rows of a fields.vtkhdf: the time, u_x, u_y, v_x and v_y [nodes].
+/// @param n_snapshots  for which the head has room
+RowFormat snapshot_format(const Origin& origin, std::size_t n_snapshots, std::size_t n_nodes);
+/// Nodes of the left edge of a periodic plate, and of the right one, which move as these.
+using Seam = std::vector<std::pair<std::size_t, std::size_t>>;
+/// That of a mesh whose nodes are numbered from `first` on.
+Seam seam(const mesh::Mesh& mesh, std::size_t first = 0);
+/// Gives the right edge the motion of the left one. @param place  of the values among those of a snapshot
+void close_seam(std::span<double> values, std::size_t place, std::size_t n_nodes, const Seam& seam);
 
 /// One of the ranks that fill a file together: `count` of them each some slabs of its mesh. What one has
 /// filled another one compares.

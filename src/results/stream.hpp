@@ -3,76 +3,50 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "motion/observers/event_output.hpp"
 #include "results/rows.hpp"
-#include "results/snapshots.hpp"
-#include "results/table.hpp"
 #include "threads/writer.hpp"
 
 namespace slipfront::results {
 
-inline constexpr const char* history_file = "interface.h5";
-inline constexpr const char* snapshot_file = "fields.vtkhdf";
-inline constexpr const char* probe_file = "probes.h5";
-
-/// What the files of a run hold.
-struct RunFiles {
-  Table history;
-  SnapshotRows snapshots;
-  std::optional<Table> probes = {};
-};
-
-/// Appends what a run gives to its files of rows while it goes. Another thread writes them
-/// (threads::Writer), and the steps wait for it only where more than a bounded amount would be waiting: the
-/// memory does not grow with the run. There is a file of snapshots with the first of them.
-class ResultStream : public motion::EventOutput {
+/// Appends rows to their files while a run goes. Another thread writes them (threads::Writer), and the steps
+/// wait for it only where more than a bounded amount would be waiting: the memory does not grow with the run.
+class ResultStream {
  public:
-  /// What the writer may hold at a time of blocks and snapshots that are not in their files yet; before more
-  /// is handed to it, the steps wait. A snapshot that is larger by itself is handed over when the writer has
-  /// nothing else.
+  /// What the writer may hold at a time of blocks that are not in their files yet; before more is handed to
+  /// it, the steps wait. A piece that is larger by itself is handed over when the writer has nothing else.
   static constexpr std::size_t max_bytes_waiting = 16U << 20U;
 
-  /// What the files hold so far.
-  struct Extents {
-    Extent history, snapshots, probes;
-    template <class Archive>
-    void serialize(Archive& archive) {
-      archive(history, snapshots, probes);
-    }
-  };
+  /// What the files hold so far, in their order.
+  using Extents = std::vector<Extent>;
 
   /// Makes the files in place of earlier ones.
-  ResultStream(std::filesystem::path dir, RunFiles files);
+  ResultStream(std::filesystem::path dir, std::vector<RowFormat> formats);
   /// Goes on in files that hold at least so much; what they hold beyond is cut off.
-  /// @throws UserError where one is missing, shorter, or another
-  ResultStream(std::filesystem::path dir, RunFiles files, const Extents& extents);
+  /// @throws UserError where one is missing, shorter, or another; StateError where there are others
+  ResultStream(std::filesystem::path dir, std::vector<RowFormat> formats, const Extents& extents);
+  ~ResultStream();
+  ResultStream(const ResultStream&) = delete;
+  ResultStream& operator=(const ResultStream&) = delete;
 
-  // Each throws WriteError where a file could not be written, perhaps long before.
-  void sample(const record::History& rows) override;
-  /// Takes each piece of the motion when there is room for a copy of it.
-  void snapshot(motion::TimeStepper& stepper) override;
-  void snapshot(const motion::Snapshot& snapshot);
-  void probe(const record::ProbeRecord& rows) override;
+  /// The rows of a file. Each function throws WriteError where one could not be written, perhaps long before.
+  RowSink& sink(const std::string& file);
   /// Hands rows that are not yet a whole block to the writer, for those who look into the files.
   void hand_over();
   /// Waits until all that was given is on the device.
   Extents keep();
-  /// The same, compares the files with what was given, and finishes them but for that of snapshots.
+  /// The same, compares the files with what was given, and finishes them.
   /// @throws BlowUp where a number is not finite that has to be
   void finish(Numbers numbers = Numbers::finite);
 
  private:
-  void begin_snapshot(double time_s);
-  /// @param place  of the values in the snapshot
-  void put_motion(std::vector<double> values, std::size_t place);
-
+  class File;
   std::filesystem::path dir_;
-  RunFiles files_;
-  std::optional<RowFile> history_, snapshots_, probes_;  ///< the writer's
-  std::vector<double> block_, probe_block_;              ///< rows that the writer does not have yet
+  std::vector<std::unique_ptr<File>> files_;
   threads::Writer writer_;
 };
 

@@ -2,24 +2,10 @@
 #include "results/table.hpp"
 
 #include <algorithm>
-
-#include "record/column.hpp"
-#include "results/rows.hpp"
+#include <utility>
 
 namespace slipfront::results {
 namespace {
-
-template <class Record>
-Description description_of(const record::Column<Record, std::vector<double>>& column) {
-  return {column.name, column.unit, column.description};
-}
-
-template <class Columns>
-std::vector<Description> descriptions_of(const Columns& columns) {
-  std::vector<Description> all;
-  for (const auto& column : columns) all.push_back(description_of(column));
-  return all;
-}
 
 void describe(const hdf5::File& file, const Description& about) {
   hdf5::set_attribute(file, about.name, "unit", std::string(about.unit));
@@ -34,30 +20,12 @@ std::uint64_t Table::head_bytes() const {
   return results::head_bytes(origin, n_places() * (axes.size() * sizeof(double) + longest));
 }
 
-Table history_table(std::span<const double> x_m, const Origin& origin,
-                    std::span<const Description> law_states) {
-  Table table{origin,
-              {{description_of(record::history_place), {x_m.begin(), x_m.end()}}},
-              {},
-              description_of(record::history_time),
-              descriptions_of(record::history_fields)};
-  table.fields.insert(table.fields.end(), law_states.begin(), law_states.end());
-  return table;
-}
-
-Table probe_table(std::span<const record::ProbePlace> places, const Origin& origin) {
-  Table table{origin,
-              {{{"x_m", "m", "position along the interface from the left edge"}, {}},
-               {{"y_m", "m", "position above the interface; below 0 in the base"}, {}}},
-              {},
-              description_of(record::probe_time),
-              descriptions_of(record::probe_fields)};
-  for (const auto& place : places) {
-    table.names.push_back(place.name);
-    table.axes[0].values.push_back(place.x_m);
-    table.axes[1].values.push_back(place.y_m);
-  }
-  return table;
+RowFormat row_format(const char* file, Table table) {
+  RowFormat format{.file = file, .head_bytes = table.head_bytes(), .n_places = table.n_places()};
+  format.names.push_back(table.time.name);
+  for (const auto& field : table.fields) format.names.push_back(field.name);
+  format.finish = [table = std::move(table)](const std::filesystem::path& path) { finish(path, table); };
+  return format;
 }
 
 std::vector<double> rows_of(std::span<const std::vector<double>* const> members) {
@@ -77,7 +45,9 @@ void finish(const std::filesystem::path& path, const Table& table) {
   const auto n_rows = RowReader(path, table.row_values()).n_rows();
   const hdf5::Rows rows{rows_name, n_rows, table.row_values()};
   // Places with a name are numbered, others are at their coordinate.
-  const std::string place = table.names.empty() ? table.axes.front().about.name : "probe", row = "row_value";
+  const std::string row = "row_value";
+  std::string place;
+  if (!table.axes.empty()) place = table.names.empty() ? table.axes.front().about.name : "probe";
   const auto describe_all = [&](const hdf5::File& file) {
     std::vector<hdf5::Dimensions> dimensions = {{rows_name, {table.time.name, row}}};
     hdf5::create_dimension(file, row, table.row_values());
@@ -94,14 +64,18 @@ void finish(const std::filesystem::path& path, const Table& table) {
       describe(file, axis.about);
       if (!table.names.empty()) dimensions.push_back({axis.about.name, {place}});
     }
-    if (table.names.empty()) hdf5::make_scale(file, place);
+    if (table.names.empty() && !place.empty()) hdf5::make_scale(file, place);
     hdf5::create_view(file, table.time.name, {n_rows}, rows, {{.first = 0, .n = 1}});
     describe(file, table.time);
     hdf5::make_scale(file, table.time.name);
     for (std::size_t k = 0; k < table.fields.size(); ++k) {
-      hdf5::create_view(file, table.fields[k].name, {n_rows, n}, rows, {{.first = 1 + k * n, .n = n}});
+      const char* name = table.fields[k].name;
+      const auto of_time = place.empty();
+      hdf5::create_view(file, name, of_time ? hdf5::Shape{n_rows} : hdf5::Shape{n_rows, n}, rows,
+                        {{.first = 1 + k * n, .n = n}});
       describe(file, table.fields[k]);
-      dimensions.push_back({table.fields[k].name, {table.time.name, place}});
+      dimensions.push_back({name, of_time ? std::vector<std::string>{table.time.name}
+                                          : std::vector<std::string>{table.time.name, place}});
     }
     hdf5::set_dimensions(file, dimensions);
   };

@@ -13,6 +13,7 @@
 #include "run/fields.hpp"
 #include "setup/event.hpp"
 #include "setup/event_loads.hpp"
+#include "setup/outputs.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -21,13 +22,11 @@ namespace {
 constexpr double min_report_interval_s = 2;
 constexpr double report_share = 0.02;
 
-/// Where rows go that rank 0 writes: the other ranks take part in gathering snapshots.
-struct NoOutput final : motion::EventOutput {
-  void sample(const record::History& /*row*/) override {}
-  void snapshot(motion::TimeStepper& stepper) override { stepper.snapshot(); }
-  void probe(const record::ProbeRecord& /*rows*/) override {}
+/// Where rows go that rank 0 writes: the other ranks take part in gathering them.
+struct NoRows final : results::RowSink {
+  void put(std::vector<double> /*values*/) override {}
 };
-NoOutput no_output;
+NoRows no_rows;
 
 }  // namespace
 
@@ -43,7 +42,7 @@ EventPhase::EventPhase(const Problem& problem, Processes& processes, const motio
 void EventPhase::begin(InitialState initial) {
   initial_ = std::move(initial);
   stepper_ = setup::start_event(problem_, initial_, execution_, processes_);
-  at_root([&] { stream_.emplace(root_->dir, run_files(problem_, initial_, stepper_->step_s())); });
+  at_root([&] { stream_.emplace(root_->dir, formats()); });
   emplace_run();
   begin_steps();
 }
@@ -61,7 +60,7 @@ void EventPhase::restore(results::InputArchive* kept) {
   with_file([&] {
     results::ResultStream::Extents extents;
     (*kept)(extents);
-    stream_.emplace(root_->dir, run_files(problem_, initial_, stepper_->step_s()), extents);
+    stream_.emplace(root_->dir, formats(), extents);
   });
   emplace_run();
   auto of_run = processes_.from_root([&](MessageBuffer& to) {
@@ -76,11 +75,17 @@ void EventPhase::restore(results::InputArchive* kept) {
   begin_steps();
 }
 
+std::vector<results::RowFormat> EventPhase::formats() const {
+  return formats_of(setup::output_setup(problem_, initial_, stepper_->step_s()));
+}
+
 void EventPhase::emplace_run() {
   run_.emplace(setup::begin_event(
       problem_, initial_, *stepper_,
       [this](std::int64_t step, std::int64_t total) { return look(step, total); },
-      is_root() ? static_cast<motion::EventOutput*>(&*stream_) : &no_output,
+      [this](const results::Output& output) -> results::RowSink& {
+        return is_root() ? stream_->sink(output.file) : no_rows;
+      },
       more_ ? more_() : motion::Observers{}));
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "advice/outlook.hpp"
 #include "base/clock.hpp"
@@ -66,6 +67,8 @@ class EventPhase {
   void at_root(const std::function<void()>& work) {
     processes_.from_root([&](MessageBuffer& /*to*/) { work(); });
   }
+  /// Of its files of rows.
+  std::vector<results::RowFormat> formats() const;
   void emplace_run();
   /// What both ways of beginning come to.
   void begin_steps();

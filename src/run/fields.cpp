@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 #include "files/files.hpp"
-#include "results/stream.hpp"
+#include "results/outputs.hpp"
 #include "run/run.hpp"
 #include "setup/meshes.hpp"
 #include "setup/snapshot_mesh.hpp"
@@ -81,7 +81,7 @@ bool all_see(const Order& order, Processes& processes) {
 }
 
 Order order_of(const std::filesystem::path& dir, const std::filesystem::path& state) {
-  const auto file = std::filesystem::absolute(dir / results::snapshot_file);
+  const auto file = std::filesystem::absolute(dir / results::snapshot_output.file);
   if (!files::is_there(file)) return {};
   return {file, std::filesystem::file_size(file), std::filesystem::absolute(state / "seen-by-all"),
           unique_text()};
@@ -111,7 +111,7 @@ void write_fields(const std::filesystem::path& dir, const std::filesystem::path&
   processes.from_root([&](MessageBuffer&) {
     if (is_in_rows && are_several)
       note(fmt::format("{} is written by rank 0 alone: others do not see {}, or cannot write there",
-                       results::snapshot_file, dir.string()));
+                       results::snapshot_output.file, dir.string()));
     const auto make_mesh = [&] {
       return is_in_rows ? setup::snapshot_mesh_in_rows(problem)
                         : setup::whole_snapshot_mesh(setup::check(problem, processes));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "advice/notes.hpp"
@@ -77,14 +78,17 @@ Result run_from(const Problem& problem, const InitialState& initial, const motio
   const auto stepper = setup::whole_stepper(problem, initial, execution);
   stepper->start(initial.before(problem.start.kind), shear_speed_in_event_m_per_s(problem),
                  setup::event_loads(problem, initial));
-  return run_from(problem, initial, *stepper, monitor, nullptr, std::move(more));
+  return run_from(problem, initial, *stepper, monitor, std::move(more));
 }
 
 Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& stepper,
-                const motion::Monitor& monitor, motion::EventOutput* output, motion::Observers more) {
+                const motion::Monitor& monitor, motion::Observers more) {
   const auto start = Clock::now();
-  auto event = setup::begin_event(problem, initial, stepper, monitor, output, std::move(more));
+  results::KeptOutputs rows;
+  const auto sinks = [&](const results::Output& output) -> results::RowSink& { return rows[output.file]; };
+  auto event = setup::begin_event(problem, initial, stepper, monitor, sinks, std::move(more));
   auto result = collect(problem, stepper, event.run());
+  result.rows = std::move(rows);
   result.stepping_wall_s = seconds_since(start);
   analyse(result, initial);
   return result;

@@ -17,14 +17,10 @@
 #include "problem/problem.hpp"
 #include "record/sequence.hpp"
 #include "results/contents.hpp"
+#include "results/outputs.hpp"
 #include "setup/initial_state.hpp"
 #include "setup/snapshot_mesh.hpp"
 #include "solid/material.hpp"
-
-namespace slipfront::results {
-struct RunFiles;
-struct Table;
-}  // namespace slipfront::results
 
 namespace slipfront::run {
 
@@ -42,6 +38,7 @@ struct Result {
   double node_updates_per_step = 0;
   double stepping_wall_s = 0;
   motion::Event event;
+  results::KeptOutputs rows;  ///< those that were not written while it went
   std::vector<fronts::Front> fronts;
   std::vector<std::vector<fracture::Passage>> passages;  ///< of each front, at its points
   advice::RuptureOutlook rupture;
@@ -71,11 +68,9 @@ void analyse(Result& result, const InitialState& initial);
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early; event.end says which.
 /// @param started  by start_event
-/// @param output  takes samples and snapshots; without one the event keeps them
 /// @param more    further observers
 Result run_from(const Problem& problem, const InitialState& initial, motion::TimeStepper& started,
-                const motion::Monitor& monitor, motion::EventOutput* output = nullptr,
-                motion::Observers more = {});
+                const motion::Monitor& monitor, motion::Observers more = {});
 /// Starts the event as well, and leaves the initial state as it is.
 Result run_from(const Problem& problem, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution = {}, motion::Observers more = {});
@@ -104,10 +99,6 @@ inline constexpr const char* run_file = "run.json";
 inline constexpr const char* end_file = "sequence.state";
 /// What run.json is of a run, of a sequence.
 inline constexpr const char* sequence_file = "sequence.json";
-/// What the files of its rows hold. @param step_s  of its event
-results::RunFiles run_files(const Problem& problem, const InitialState& initial, double step_s);
-/// What a history of its interface holds.
-results::Table history_table(const Problem& problem, const std::vector<double>& x_m);
 /// What a case's fields.vtkhdf holds besides.
 results::SnapshotContents snapshot_contents(const Problem& problem, const setup::SnapshotMesh& mesh);
 

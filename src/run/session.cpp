@@ -26,6 +26,7 @@
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 #include "run/event_phase.hpp"
+#include "run/outputs.hpp"
 #include "run/sequence.hpp"
 #include "run/shared_states.hpp"
 #include "setup/event.hpp"
@@ -99,7 +100,11 @@ class Session {
   /// Of the event that comes next or is under way, from 1.
   std::size_t number() const { return sequence_->events().size() + 1; }
   fs::path slow_dir() const { return results::slow_folder(dir_, number()); }
-  results::RunFiles slow_files() const { return {history_table(problem_, sequence_->x_m()), {}}; }
+  std::vector<results::RowFormat> slow_files() const {
+    auto setup = setup::output_setup(problem_, 0, 0, 0);
+    setup.x_m = sequence_->x_m();
+    return {results::history_output.format(setup)};
+  }
   fs::path event_dir() const { return sequence_ ? results::event_folder(dir_, number()) : dir_; }
   /// Where a finished event is, or the slow slip before it: with the sequence that this one extends perhaps.
   fs::path done(fs::path (*folder_of)(const fs::path&, std::size_t), std::size_t k) const {
@@ -334,7 +339,7 @@ const InitialState* Session::next_state() {
       slow_.emplace(slow_dir(), slow_files());
       began_ = true;
     }
-    slow_->sample(row);
+    slow_->sink(results::history_output.file).put(results::rows_of(members_of(row)));
     // Ordinary slow slip has fewer rows.
     constexpr std::size_t many = 4096;
     const auto n_rows = sequence_->n_slow_rows();
@@ -349,7 +354,7 @@ const InitialState* Session::next_state() {
     if (slow_) {
       slow_->finish();
       slow_.reset();
-      slow_sums_.push_back(files::sha256_of_file(slow_dir() / results::history_file));
+      slow_sums_.push_back(files::sha256_of_file(slow_dir() / results::history_output.file));
     }
     return initial;
   } catch (const UserError& error) {
@@ -388,7 +393,7 @@ void Session::require_parts_unchanged() const {
   for (std::size_t k = 0; k < sums_.size(); ++k)
     require_sum(done(results::event_folder, k + 1) / files::checksum_list, sums_[k]);
   for (std::size_t k = 0; k < slow_sums_.size(); ++k)
-    require_sum(done(results::slow_folder, k + 1) / results::history_file, slow_sums_[k]);
+    require_sum(done(results::slow_folder, k + 1) / results::history_output.file, slow_sums_[k]);
 }
 
 bool Session::look_at_statics() {
@@ -623,7 +628,7 @@ void require_came_to_end(const Result& result, const results::ResultFolder& fold
 bool is_complete(const std::filesystem::path& dir) {
   const auto is_there = [&](const char* name) { return files::is_there(dir / name); };
   if (is_there(sequence_file)) return has_all(dir);
-  return is_there(files::checksum_list) && is_there("run.json") && is_there(results::history_file);
+  return is_there(files::checksum_list) && is_there("run.json") && is_there(results::history_output.file);
 }
 
 }  // namespace slipfront::run

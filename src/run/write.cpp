@@ -15,6 +15,7 @@
 #include "results/folder.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
+#include "run/outputs.hpp"
 #include "run/run.hpp"
 #include "setup/snapshot_mesh.hpp"
 #include "setup/snapshot_plan.hpp"
@@ -298,36 +299,8 @@ results::Numbers numbers_of(const Status& status) {
   return status.name == "complete" ? results::Numbers::finite : results::Numbers::any;
 }
 
-/// What a run's HDF5 files say of where they come from.
-static results::Origin origin_of(const Problem& problem) {
-  return {problem.source.title, problem.source.case_text};
-}
-
-results::Table history_table(const Problem& problem, const std::vector<double>& x_m) {
-  std::vector<results::Description> law_states;
-  for (const auto& state : problem.friction.law.states())
-    law_states.push_back({state.name, state.unit, state.description});
-  return results::history_table(x_m, origin_of(problem), law_states);
-}
-
-results::RunFiles run_files(const Problem& problem, const InitialState& initial, double step_s) {
-  const auto origin = origin_of(problem);
-  const auto n_snapshots = setup::snapshot_plan(problem, step_s).times_s.size();
-  results::RunFiles files{
-      history_table(problem, initial.subcritical.tractions.x_m),
-      {origin, n_snapshots, static_cast<std::size_t>(initial.n_nodes), results::seam(initial.mesh)}};
-  if (initial.base) {
-    const auto below =
-        results::seam(*initial.base, static_cast<std::size_t>(setup::n_nodes_of(initial.mesh)));
-    files.snapshots.seam.insert(files.snapshots.seam.end(), below.begin(), below.end());
-  }
-  if (const auto places = problem.probes; !places.empty())
-    files.probes = results::probe_table(places, origin);
-  return files;
-}
-
 results::SnapshotContents snapshot_contents(const Problem& problem, const setup::SnapshotMesh& mesh) {
-  results::SnapshotContents contents{{}, origin_of(problem), prescribed_stress(problem)};
+  results::SnapshotContents contents{{}, setup::origin_of(problem), prescribed_stress(problem)};
   if (!problem.output.snapshot_stress) return contents;
   contents.bodies.push_back({mesh.n_plate_cells, problem.above().material});
   if (problem.has_below()) contents.bodies.push_back({mesh.slabs.n_cells, problem.below().material});
@@ -408,15 +381,12 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   const auto& event = result.event;
   problem::write_case(dir, result.problem.source);
   write_static(dir, result.problem, initial);
-  results::ResultStream stream(dir, run_files(result.problem, initial, result.step_s));
-  stream.sample(event.history);
-  if (!event.probes.time_s.empty()) stream.probe(event.probes);
-  for (const auto& snapshot : event.snapshots) stream.snapshot(snapshot);
+  results::ResultStream stream(dir, formats_of(setup::output_setup(result.problem, initial, result.step_s)));
+  for (const auto& [file, rows] : result.rows) stream.sink(file).put(rows.values);
   stream.finish(numbers_of(status_of(result)));
-  if (!event.snapshots.empty()) {
+  if (const auto file = dir / results::snapshot_output.file; files::is_there(file)) {
     const auto mesh = setup::whole_snapshot_mesh({initial.mesh, initial.base});
-    results::finish_snapshots(dir / results::snapshot_file, mesh.slabs,
-                              snapshot_contents(result.problem, mesh));
+    results::finish_snapshots(file, mesh.slabs, snapshot_contents(result.problem, mesh));
   }
   write_so_far(dir, result, event.energies, initial, status_of(result));
   results::seal(dir);

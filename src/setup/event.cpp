@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "setup/event.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "base/error.hpp"
@@ -11,7 +13,7 @@
 #include "motion/trigger_zone.hpp"
 #include "problem/contact.hpp"
 #include "setup/event_loads.hpp"
-#include "setup/snapshot_plan.hpp"
+#include "setup/outputs.hpp"
 #include "setup/subdomains.hpp"
 #include "stability/verdict.hpp"
 
@@ -94,7 +96,7 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, Initia
 
 motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
-                             motion::EventOutput* output, motion::Observers more) {
+                             const results::Sinks& sinks, motion::Observers more) {
   const auto& state = initial.before(problem.start.kind);
   std::optional<motion::Interval> stop_window;
   if (problem.is_sequence()) stop_window = {state.inside_from_m, state.inside_to_m};
@@ -105,13 +107,14 @@ motion::EventRun begin_event(const Problem& problem, const InitialState& initial
                 stability::radiation_damping_Pa_s_per_m(materials_of(problem))},
       .loads_settle_s = loads_settle_s(problem),
       .time = problem.time,
-      .sampling = {problem.output.history_interval_s, problem.output.energy_interval_s,
-                   snapshot_plan(problem, stepper.step_s()).times_s, problem.probe_interval_s,
-                   prescribed_stress(problem)},
+      .tip_slip_interval_s = problem.output.history_interval_s,
+      .energy_interval_s = problem.output.energy_interval_s,
       .halo = motion::halo_for(initial.mesh, problem.fronts.l_star_m),
       .stop_window = stop_window,
       .slow_m_per_s = problem.is_slow() ? slow_slip_rate_m_per_s(problem) : infinity};
-  return {stepper, setup, monitor, output, std::move(more)};
+  auto list = results::observers_of(output_setup(problem, initial, stepper.step_s()), stepper, sinks);
+  std::ranges::move(more, std::back_inserter(list));
+  return {stepper, setup, monitor, std::move(list)};
 }
 
 }  // namespace slipfront::setup

@@ -10,6 +10,7 @@
 #include "motion/stepper.hpp"
 #include "problem/problem.hpp"
 #include "processes/processes.hpp"
+#include "results/outputs.hpp"
 #include "setup/initial_state.hpp"
 
 // A case's event, about to begin: the bodies in their initial state, and what is observed of their motion.
@@ -40,8 +41,9 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const Problem& problem, Initia
                                                   Processes& processes = one_process());
 
 /// The event of a case, about to begin with a started stepper; see motion::EventRun.
+/// @param sinks  of its outputs
 motion::EventRun begin_event(const Problem& problem, const InitialState& initial,
                              motion::TimeStepper& stepper, const motion::Monitor& monitor,
-                             motion::EventOutput* output = nullptr, motion::Observers more = {});
+                             const results::Sinks& sinks, motion::Observers more = {});
 
 }  // namespace slipfront::setup

@@ -66,6 +66,12 @@ bool stop(std::int64_t, std::int64_t total) {
   return total == 0;
 }
 
+/// Of rows that nobody reads.
+results::RowSink& sinks(const results::Output& /*output*/) {
+  static results::KeptRows rows;
+  return rows;
+}
+
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -100,15 +106,15 @@ std::string checkpoint_of(const input::Case& config) {
     const auto stepper = setup::start_event(make_problem(config), initial);
     head.in_event = true;
     std::optional<motion::EventRun> event;
-    event.emplace(
-        setup::begin_event(make_problem(config), initial, *stepper, [&](std::int64_t, std::int64_t) {
-          checkpoints.keep(head, [&](results::OutputArchive& archive) {
-            archive(initial);
-            run::write_motion(archive, *stepper);
-            archive(results::ResultStream::Extents{}, *event);
-          });
-          return false;
-        }));
+    const auto keep = [&](std::int64_t, std::int64_t) {
+      checkpoints.keep(head, [&](results::OutputArchive& archive) {
+        archive(initial);
+        run::write_motion(archive, *stepper);
+        archive(results::ResultStream::Extents{}, *event);
+      });
+      return false;
+    };
+    event.emplace(setup::begin_event(make_problem(config), initial, *stepper, keep, sinks));
     event->run();
   }
   auto content = content_of(scratch.dir() / file_name);
@@ -124,7 +130,7 @@ void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
     const auto loads = setup::event_loads(make_problem(config), initial);
     const auto stepper = setup::make_stepper(make_problem(config), initial);
     run::read_motion(&kept.body, *stepper, loads);
-    auto event = setup::begin_event(make_problem(config), initial, *stepper, stop);
+    auto event = setup::begin_event(make_problem(config), initial, *stepper, stop, sinks);
     results::ResultStream::Extents extents;
     kept.body(extents, event);
     event.require_restored();

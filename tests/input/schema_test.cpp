@@ -129,7 +129,7 @@ const std::string changed_text =
     "fronts = {l_star_m = 1e-3, speed_interval = 'approach', arrest_time_s = 2e-5, min_length_m = 3e-3,"
     " crack_share = 0.625, pulse_share = 0.25, trigger_margin_m = 6e-3}\n"
     "output = {history_interval_s = 1e-7, snapshot_times_s = [0, 1e-5, 3.3e-5], snapshot_interval_s = 4e-5,"
-    " snapshot_stress = false, energy_interval_s = 3e-5}\n"
+    " snapshot_stress = false, energy_interval_s = 3e-5, moment_rate = true}\n"
     "probes = {x_m = [0.01, 0.02], y_m = [0.03, 0.05], names = ['left', 'b \\'], interval_s = 2e-6}\n";
 
 Case changed_case() {

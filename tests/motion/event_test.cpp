@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "interface/friction/coulomb.hpp"
+#include "motion/observers/history_rows.hpp"
 #include "motion/ramp.hpp"
 #include "motion/support.hpp"
 #include "motion/trigger_zone.hpp"
@@ -39,23 +40,32 @@ class EventRun : public ::testing::Test {
   double c_L_ = solid::longitudinal_speed_m_per_s(material_);
   Waves waves_{c_L_, solid::shear_modulus_Pa(material_) / solid::shear_speed_m_per_s(material_)};
   TimeStepping time_{.interface_substeps = 4, .end_s = 60e-6, .quiet_s = 1};
-  Sampling sampling_;
+  double history_interval_s_ = 0.5e-6, energy_interval_s_ = 20e-6;
+  record::History history_;  ///< of the last run
   double loads_settle_s_ = 0;
 
-  Event run(const statics::Equilibrium& state, const Monitor& monitor = always, EventOutput* output = nullptr,
-            Observers more = {}) {
+  Event run(const statics::Equilibrium& state, const Monitor& monitor = always) {
+    history_ = {};
+    return run(state, monitor, [this](const record::History& row) {
+      record::append_rows(members_of(history_), members_of(row));
+    });
+  }
+  Event run(const statics::Equilibrium& state, const Monitor& monitor,
+            const std::function<void(const record::History&)>& take) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
     stepper.start(state, 1e-6 * c_L_);
-    const EventSetup setup = {state, mu_s, waves_, loads_settle_s_, time_, sampling_, 2};
-    return motion::EventRun(stepper, setup, monitor, output, std::move(more)).run();
+    const EventSetup setup = {
+        state, mu_s, waves_, loads_settle_s_, time_, history_interval_s_, energy_interval_s_, 2};
+    Observers observers;
+    observers.push_back(std::make_unique<HistoryRows>(history_interval_s_, take));
+    return motion::EventRun(stepper, setup, monitor, std::move(observers)).run();
   }
   double step_s() { return Stepper(mesh_, material_, support::paper_law, time_).step_s(); }
 };
 
 TEST_F(EventRun, EndsAtItsEnd) {
-  // Times so far that they are never.
-  sampling_.energy_interval_s = 1e300;
-  sampling_.snapshot_times_s = {1e300};
+  // A time so far that it is never.
+  energy_interval_s_ = 1e300;
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::end_time);
   EXPECT_EQ(event.steps, static_cast<std::int64_t>(std::ceil(60e-6 / step_s())));
@@ -65,19 +75,18 @@ TEST_F(EventRun, EndsAtItsEnd) {
   EXPECT_EQ(event.record.halo, 2);
   EXPECT_TRUE(event.record.onsets.empty());
   EXPECT_EQ(event.energies.size(), 2);
-  EXPECT_TRUE(event.snapshots.empty());
 }
 
 TEST_F(EventRun, EnergiesMayBeAskedForAtEveryStep) {
   // Multiples of the step that are rounded: a row for each step all the same.
   time_.end_s = 2e-3;
   for (const double interval_s : {1e-12, step_s()}) {
-    sampling_.energy_interval_s = interval_s;
-    sampling_.history_interval_s = interval_s;
+    energy_interval_s_ = interval_s;
+    history_interval_s_ = interval_s;
     const Event event = run(calm_);
     ASSERT_GT(event.steps, 500);
     EXPECT_EQ(std::ssize(event.energies), event.steps + 1);
-    EXPECT_EQ(std::ssize(event.history.time_s), event.steps);
+    EXPECT_EQ(std::ssize(history_.time_s), event.steps);
   }
 }
 
@@ -123,7 +132,7 @@ TEST_F(EventRun, EndsWhenTheMonitorSaysSo) {
 
 TEST_F(EventRun, IsInterruptedAfterAnyStep) {
   time_.end_s = 1e-3;
-  sampling_.energy_interval_s = 1e300;
+  energy_interval_s_ = 1e300;
   for (const int steps : {1, 49, 73}) {
     const test::InterruptionAfter after(steps - 1);
     std::int64_t asked_at = 0;
@@ -154,7 +163,7 @@ TEST_F(EventRun, EndsWhenItBlowsUp) {
   EXPECT_THAT(event.reason, HasSubstr("time.step_factor"));
   EXPECT_LT(event.steps, 1000);
   // Seen before the numbers are lost.
-  for (const double slip : event.history.slip_m) ASSERT_TRUE(std::isfinite(slip));
+  for (const double slip : history_.slip_m) ASSERT_TRUE(std::isfinite(slip));
 }
 
 TEST_F(EventRun, EndsWhenEnergyComesFromNowhere) {
@@ -169,41 +178,32 @@ TEST_F(EventRun, EndsWhenEnergyComesFromNowhere) {
 }
 
 TEST_F(EventRun, SamplesAreSpacedAsAsked) {
-  sampling_.history_interval_s = 7e-6;
+  history_interval_s_ = 7e-6;
   const Event event = run(calm_);
   const double step = step_s();
   ASSERT_LT(step, 7e-6);
-  ASSERT_EQ(event.history.time_s.size(), 9);  // 0, 7, ... 56 us
+  ASSERT_EQ(history_.time_s.size(), 9);  // 0, 7, ... 56 us
   for (std::size_t k = 0; k < 9; ++k) {
     // The first step at or after the time.
     const double asked = 7e-6 * static_cast<double>(k);
-    EXPECT_GE(event.history.time_s[k], asked * (1 - 1e-12));
-    EXPECT_LT(event.history.time_s[k], asked + step);
+    EXPECT_GE(history_.time_s[k], asked * (1 - 1e-12));
+    EXPECT_LT(history_.time_s[k], asked + step);
   }
   for (const auto& field : record::history_fields)
-    EXPECT_EQ((event.history.*field.member).size(), 9 * mesh_.interface_nodes.size());
-  EXPECT_EQ(event.history.x_m, calm_.tractions.x_m);
+    EXPECT_EQ((history_.*field.member).size(), 9 * mesh_.interface_nodes.size());
 
-  sampling_.history_interval_s = 0.1 * step;  // no finer than the steps
-  EXPECT_EQ(run(calm_).history.time_s.size(), static_cast<std::size_t>(event.steps));
+  history_interval_s_ = 0.1 * step;  // no finer than the steps
+  EXPECT_EQ(run(calm_).steps, std::ssize(history_.time_s));
 }
 
-/// Has room for five samples.
-class SmallOutput : public EventOutput {
- public:
-  void sample(const record::History&) override {
-    if (n_samples_ == 5) throw std::runtime_error("no room");
-    ++n_samples_;
-  }
-  void snapshot(TimeStepper&) override {}
-  void probe(const record::ProbeRecord&) override {}
-  int n_samples_ = 0;
-};
-
 TEST_F(EventRun, AFailingOutputEndsTheEvent) {
-  SmallOutput output;
-  EXPECT_THROW(run(calm_, always, &output), std::runtime_error);
-  EXPECT_EQ(output.n_samples_, 5);
+  int n_rows = 0;
+  const auto has_room_for_five = [&](const record::History&) {
+    if (n_rows == 5) throw std::runtime_error("no room");
+    ++n_rows;
+  };
+  EXPECT_THROW(run(calm_, always, has_room_for_five), std::runtime_error);
+  EXPECT_EQ(n_rows, 5);
 }
 
 /// Six nodes 10 mm apart, the outermost two open; mu_s p_s - t_s = 3, 6, 9, 12 Pa inside.

@@ -27,6 +27,7 @@ end_s = 60e-6
 {friction}
 [output]
 snapshot_times_s = [0, 30e-6, 45e-6]
+moment_rate = true
 [probes]
 x_m = [0.0731, 0.1]
 y_m = [0.0049, 0.0101]

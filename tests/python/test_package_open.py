@@ -159,6 +159,20 @@ def test_units_of_names():
     assert [unit_of(name) for name in names] == ["J/m3", "J/m", "m/s", "Pa", "m", "1"]
 
 
+def test_moment_rate(tmp_path):
+    run = slipfront.open(results_of(tmp_path, CASE + "output.moment_rate = true\n"))
+    rates = run.moment_rate
+    assert set(rates) == {
+        *("potency_rate_m2_per_s", "moment_rate_N_per_s"),
+        *("right_potency_rate_m2_per_s", "left_potency_rate_m2_per_s"),
+    }
+    assert rates.moment_rate_N_per_s.attrs["units"] == "N/s"
+    assert rates.potency_rate_m2_per_s.attrs["long_name"] == "slip rate, summed over the interface"
+    interval_s = float(rates.time_s[1] - rates.time_s[0])
+    potency = [float(rates[name].sum()) * interval_s for name in rates if name.endswith("m2_per_s")]
+    assert potency == pytest.approx([potency[0]] * 3, rel=1e-9) and potency[0] > 0
+
+
 def test_probes(tmp_path):
     case = CASE + 'probes = {x_m = [0.05, 0.1], y_m = [0.01, 0.02], names = ["left", "middle"]}\n'
     probes = slipfront.open(results_of(tmp_path, case)).probes

@@ -430,6 +430,7 @@ snapshot_times_s = [1e-5, 2e-5]
 snapshot_interval_s = 1.5e-5
 snapshot_stress = false
 energy_interval_s = 1e-5
+moment_rate = true
 [probes]
 x_m = [0.05, 0.1, 0.15, 0.16]
 y_m = [0.01, 0.01, 0.02, 0.02]

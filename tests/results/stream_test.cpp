@@ -19,6 +19,8 @@ namespace slipfront::results {
 namespace {
 
 using test::error_of;
+const char* const history_file = history_output.file;
+const char* const snapshot_file = snapshot_output.file;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -42,12 +44,20 @@ class Stream : public test::InFolder {
     all.x_m = x_m_;
     return all;
   }
-  RunFiles files() const { return {history_table(x_m_), {.n_snapshots = 10, .n_nodes = mesh_.n_nodes}}; }
+  std::vector<RowFormat> files() const {
+    return {row_format(history_file, history_table(x_m_)), snapshot_format({}, 10, mesh_.n_nodes)};
+  }
+  void put(ResultStream& stream, const record::History& rows) const {
+    stream.sink(history_file).put(rows_of(members_of(rows)));
+  }
+  void put_snapshot(ResultStream& stream) const {
+    stream.sink(snapshot_file).put(test::row_of(stepper_->snapshot()));
+  }
   /// What rows and a snapshot with every tenth make of a folder.
   ResultStream::Extents give(ResultStream& stream, int first, int end) {
     for (int k = first; k < end; ++k) {
-      stream.sample(row(k));
-      if (k % 10 == 0) stream.snapshot(*stepper_);
+      put(stream, row(k));
+      if (k % 10 == 0) put_snapshot(stream);
     }
     return stream.keep();
   }
@@ -75,11 +85,11 @@ TEST_F(Stream, KeepsAllItWasGiven) {
   ResultStream stream(folder_.path(), files());
   EXPECT_THAT(test::names_below(folder_.path()), ElementsAre(history_file));
   const auto extents = give(stream, 0, n_rows);
-  EXPECT_EQ(extents.history.bytes,
-            files().history.head_bytes() + n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
+  EXPECT_EQ(extents.front().bytes,
+            files().front().head_bytes + n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
   finish(stream, folder_.path());
   EXPECT_TRUE(equal(test::read_history(folder_ / history_file), rows(n_rows)));
-  EXPECT_EQ(std::filesystem::file_size(folder_ / history_file), extents.history.bytes);
+  EXPECT_EQ(std::filesystem::file_size(folder_ / history_file), extents.front().bytes);
   EXPECT_EQ(test::read(folder_ / snapshot_file, "/VTKHDF/Steps/Values").values.size(), 401U);
 }
 
@@ -88,8 +98,8 @@ TEST_F(Stream, GoesOnWhereItWasKept) {
   {
     ResultStream stream(folder_.path(), files());
     extents = give(stream, 0, 13);
-    for (int k = 13; k < 17; ++k) stream.sample(row(100 + k));  // of steps that are done again
-    stream.snapshot(*stepper_);
+    for (int k = 13; k < 17; ++k) put(stream, row(100 + k));  // of steps that are done again
+    put_snapshot(stream);
     stream.keep();
   }
   ResultStream stream(folder_.path(), files(), extents);
@@ -107,7 +117,7 @@ TEST_F(Stream, GoesOnInFilesThatWereFinished) {
     finish(stream, folder_.path());
   }
   ResultStream stream(folder_.path(), files(), extents);
-  const RowReader reader(folder_ / history_file, files().history.row_values());  // it is open again
+  const RowReader reader(folder_ / history_file, files().front().row_values());  // it is open again
   EXPECT_EQ(reader.n_rows(), 13U);
   give(stream, 13, 25);
   finish(stream, folder_.path());
@@ -124,7 +134,7 @@ TEST_F(Stream, IsFinishedOrNotWhereverFinishingIsCutOff) {
   // All but the last to be written, the first eight bytes.
   for (const auto& [name, text] : before)
     test::write_file(folder_ / name, text.substr(0, 8) + open(name.c_str()).substr(8));
-  const RowReader reader(folder_ / history_file, files().history.row_values());
+  const RowReader reader(folder_ / history_file, files().front().row_values());
   EXPECT_EQ(reader.n_rows(), 25U);
   ResultStream again(folder_.path(), files(), extents);
   finish(again, folder_.path());
@@ -136,7 +146,7 @@ TEST_F(Stream, WithoutSnapshotsYetLeavesNoFileOfThem) {
   {
     ResultStream stream(folder_.path(), files());
     extents = stream.keep();
-    stream.snapshot(*stepper_);
+    put_snapshot(stream);
     stream.keep();
   }
   const ResultStream stream(folder_.path(), files(), extents);
@@ -182,20 +192,20 @@ TEST_F(Stream, ANumberThatIsNotFiniteIsToldByItsColumn) {
     bad.t_Pa.back() = nan;
     std::optional<ResultStream> stream(std::in_place, folder_.path(), files());
     give(*stream, 0, 3);
-    stream->sample(bad);
+    put(*stream, bad);
     const auto extents = stream->keep();
     if (goes_on) {
       stream.reset();
       stream.emplace(folder_.path(), files(), extents);
     }
-    stream->sample(row(4));
+    put(*stream, row(4));
     EXPECT_EQ(error_of([&] { stream->finish(); }).find((folder_ / history_file).string() + ": t_Pa is not"),
               0U);
   }
   ResultStream stream(folder_.path(), files());
   auto bad = row(0);
   bad.time_s.back() = infinity;
-  stream.sample(bad);
+  put(stream, bad);
   stream.finish(Numbers::any);  // of what has blown up
   EXPECT_EQ(test::read(folder_ / history_file, "time_s").values.size(), 1U);
 }
@@ -207,7 +217,7 @@ TEST_F(Stream, AFullDiskIsToldByTheFilesName) {
     const test::FileSizeLimit limit(256 * 1024);
     ResultStream stream(folder_.path(), files());
     error = error_of([&] {
-      for (int k = 0;; ++k) stream.sample(row(k));
+      for (int k = 0;; ++k) put(stream, row(k));
     });
   }
   EXPECT_EQ(error, (folder_ / history_file).string() +

@@ -36,7 +36,7 @@ TEST(ProblemF, ArrivalsConvergeToThoseOfAnotherCode) {
     EXPECT_LT(std::abs(record::imbalance_J_per_m(energies.back(), energies.front())),
               1e-12 * energies.back().prestress_work);
     EXPECT_LT(energies.back().friction_work, -0.1 * energies.back().prestress_work);
-    return test::largest_difference_s(result.event.history, 0.25, expected);
+    return test::largest_difference_s(test::history_of(result), 0.25, expected);
   };
   // Measured down to h = 0.25 mm (docs/two-bodies.md): 0.17 us at 0.5 mm, where the limit is 0.5 us.
   const double coarse_s = largest_s(2e-3), fine_s = largest_s(1e-3);
@@ -49,7 +49,7 @@ TEST(Tpv205, FinalSlipIsThatOfOtherCodes) {
   const auto result = run_case(input::read_case(
       test::reference / "tpv205.toml",
       {{"plate.element_size_m", "200"}, {"plate.height_m", "20e3"}, {"base.height_m", "20e3"}}));
-  const auto& h = result.event.history;
+  const auto h = test::history_of(result);
   const auto* last_slip_m = &h.slip_m[h.slip_m.size() - h.x_m.size()];
   for (const auto& [x_m, slip_m] : {std::pair(-12e3, 4.29), std::pair(-4.5e3, 7.29), std::pair(0.0, 8.30),
                                     std::pair(4.5e3, 6.45), std::pair(12e3, 3.66)}) {
@@ -67,7 +67,7 @@ TEST(Base, SnapshotsHoldBothBodies) {
   config.time.end_s = 40e-6;
   config.output.snapshot_times_s = {40e-6};
   const auto initial = setup::make_initial_state(make_problem(config), go_on);
-  const auto snapshots = run_from(make_problem(config), initial, go_on).event.snapshots;
+  const auto snapshots = test::snapshots_of(run_from(make_problem(config), initial, go_on), initial.n_nodes);
   ASSERT_EQ(snapshots.size(), 1U);
   mesh::Mesh mesh;
   setup::whole_snapshot_mesh({initial.mesh, initial.base}).slabs.visit(0, [&](const mesh::Slab& slab) {
@@ -123,7 +123,7 @@ TEST(Base, SingleRowsAgreeWithDoubleOnesWhateverTheWaveSpeeds) {
     const auto in_double = run_case(config);
     config.time.precision = motion::Precision::single_precision;
     const auto in_single = run_case(config);
-    const auto &a = in_double.event.history, &b = in_single.event.history;
+    const auto a = test::history_of(in_double), b = test::history_of(in_single);
     ASSERT_EQ(a.slip_m.size(), b.slip_m.size());
     const double slip_m = std::ranges::max(a.slip_m);
     EXPECT_GT(slip_m, 1e-6);
@@ -140,7 +140,7 @@ TEST(Base, ASoftBaseKeepsTheCommonStepShort) {
   const auto result = run_case(config);
   EXPECT_EQ(result.step_s, 16 * advice::info(make_problem(rigid)).step_s);
   EXPECT_LT(result.event.time_s, config.time.end_s + 1.001 * result.step_s);
-  EXPECT_GT(result.event.history.time_s.size(), 8U);
+  EXPECT_GT(test::history_of(result).time_s.size(), 8U);
   config.base.material = {.youngs_modulus_Pa = 1e-6, .density_kg_per_m3 = 1e6, .stiffness_damping_s = 0};
   EXPECT_GT(advice::info(make_problem(config)).n_steps, 8);
 }

@@ -71,8 +71,8 @@ TEST(FrictionAlongX, ABarrierStopsAFront) {
 TEST(FrictionAlongX, EqualRowsAreTheUniformLawBitByBit) {
   const auto uniform = run_case(rupture());
   const auto varying = run_case(rupture("x_m,mu_s,mu_k,d_c_m\n0,0.6,0.3,4e-6\n0.2,0.6,0.3,4e-6\n"));
-  EXPECT_EQ(varying.event.history.t_Pa, uniform.event.history.t_Pa);
-  EXPECT_EQ(varying.event.history.slip_rate_m_per_s, uniform.event.history.slip_rate_m_per_s);
+  EXPECT_EQ(test::history_of(varying).t_Pa, test::history_of(uniform).t_Pa);
+  EXPECT_EQ(test::history_of(varying).slip_rate_m_per_s, test::history_of(uniform).slip_rate_m_per_s);
   ASSERT_EQ(varying.fronts.size(), uniform.fronts.size());
   for (std::size_t f = 0; f < varying.fronts.size(); ++f)
     for (std::size_t k = 0; k < varying.fronts[f].points.size(); ++k) {

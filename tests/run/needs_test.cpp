@@ -36,8 +36,8 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
     return static_cast<double>(std::filesystem::file_size(folder / name));
   };
   const advice::Needs n = needs_of(config);
-  EXPECT_NEAR(n.history_bytes / size_of("interface.h5"), 1, 0.3);
-  EXPECT_NEAR(n.snapshot_bytes / size_of("fields.vtkhdf"), 1, 0.3);
+  EXPECT_NEAR(n.of(results::history_output).bytes / size_of("interface.h5"), 1, 0.3);
+  EXPECT_NEAR(n.of(results::snapshot_output).bytes / size_of("fields.vtkhdf"), 1, 0.3);
   EXPECT_NEAR(n.energy_bytes / size_of("energy.csv"), 1, 0.3);
 }
 
@@ -46,7 +46,8 @@ TEST(Needs, EstimatesAgreeWithTheMesh) {
   const auto exact = advice::info(make_problem(config)).needs, estimated = needs_of(config);
   EXPECT_NEAR(estimated.memory_bytes() / exact.memory_bytes(), 1, 0.3);
   EXPECT_NEAR(static_cast<double>(estimated.steps) / static_cast<double>(exact.steps), 1, 0.3);
-  EXPECT_NEAR(estimated.history_bytes / exact.history_bytes, 1, 0.3);
+  const auto& history = results::history_output;
+  EXPECT_NEAR(estimated.of(history).bytes / exact.of(history).bytes, 1, 0.3);
   config.base.kind = input::BaseKind::body;
   config.base.plate.height_m = config.plate.height_m;
   EXPECT_NEAR(needs_of(config).statics_bytes / estimated.statics_bytes, 2, 0.3);
@@ -66,9 +67,10 @@ TEST(Needs, OfOneAmongManyIsItsPart) {
 
 TEST(Needs, CountTheStateOfAFrictionLaw) {
   auto config = coarse_case();
-  const double without = needs_of(config).history_bytes;
+  const double without = needs_of(config).of(results::history_output).bytes;
   config.friction = interface::RateAndStateSlip {};
-  EXPECT_NEAR(needs_of(config).history_bytes / without, 5.0 / 4, 1e-2);  // but for the times
+  EXPECT_NEAR(needs_of(config).of(results::history_output).bytes / without, 5.0 / 4,
+              1e-2);  // but for the times
 }
 
 TEST(Info, OfRanksIsOfTheirSubdomains) {

@@ -30,7 +30,7 @@ TEST(Observers, TheExampleEndsAnEventAtASlip) {
   const auto config = coarse_case();
   const auto initial = setup::make_initial_state(make_problem(config), test::go_on);
   const auto whole = run_from(make_problem(config), initial, test::go_on);
-  const auto& slip_m = whole.event.history.slip_m;
+  const auto slip_m = test::history_of(whole).slip_m;
   const double limit_m = 0.5 * *std::ranges::max_element(slip_m);
   const auto result =
       run_from(make_problem(config), initial, test::go_on, {},
@@ -38,7 +38,7 @@ TEST(Observers, TheExampleEndsAnEventAtASlip) {
   EXPECT_EQ(result.event.end, motion::EventEnd::observer);
   EXPECT_THAT(end_of_event(result), HasSubstr("slip has reached"));
   // Up to there it is the same event: the last row of the history is the one that was looked at.
-  const auto& cut = result.event.history;
+  const auto cut = test::history_of(result);
   const auto n_nodes = static_cast<std::ptrdiff_t>(cut.x_m.size());
   ASSERT_LT(cut.slip_m.size(), slip_m.size());
   EXPECT_TRUE(std::equal(cut.slip_m.begin(), cut.slip_m.end(), slip_m.begin()));

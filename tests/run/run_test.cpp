@@ -253,12 +253,28 @@ TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
   EXPECT_TRUE(result.fronts.empty());
 }
 
+TEST(Event, MomentRateSumsUpToThePotencyOfItsSlip) {
+  auto config = coarse_case();
+  config.output.moment_rate = true;
+  const auto result = run(config);
+  const auto& slip_m = result.event.interface_at_end.slip_m;
+  double potency_m2 = 0;
+  for (std::size_t k = 0; k < slip_m.size(); ++k) potency_m2 += slip_m[k] * coarse_state().tributary_m[k];
+  const auto& rows = result.rows.at(results::moment_rate_output.file).values;
+  for (const std::size_t column : {1, 3, 4}) {
+    double sum_m2_per_s = 0;
+    for (std::size_t k = column; k < rows.size(); k += 5) sum_m2_per_s += rows[k];
+    const double interval_s = rows[5] - rows[0];
+    EXPECT_NEAR(sum_m2_per_s * interval_s, potency_m2, 1e-9 * potency_m2);  // that of times as differences
+  }
+}
+
 TEST(Event, SnapshotsAndHistoryDoNotDisturbTheMotion) {
   auto config = coarse_case();
   const auto plain = run(config);
   config.output = {1e-6, {0, 20e-6, 60e-6}};
   const auto other = run(config);
-  EXPECT_EQ(other.event.snapshots.size(), 3U);
+  EXPECT_EQ(test::snapshots_of(other, coarse_state().n_nodes).size(), 3U);
   EXPECT_TRUE(std::ranges::equal(plain.event.record.onsets, other.event.record.onsets, {},
                                  &record::Onset::time_s, &record::Onset::time_s));
 }
@@ -312,7 +328,7 @@ TEST(Info, AgreesWithTheRun) {
     EXPECT_EQ(result.event.end, motion::EventEnd::end_time);
     EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
     EXPECT_EQ(info.n_cells, std::ssize(initial.mesh.cells));
-    EXPECT_EQ(info.n_interface, std::ssize(result.event.history.x_m));
+    EXPECT_EQ(info.n_interface, std::ssize(test::history_of(result).x_m));
     EXPECT_EQ(info.stable_step_s, result.stable_step_s);
     EXPECT_EQ(info.step_s, result.step_s);
     EXPECT_DOUBLE_EQ(info.step_s, 0.9 * info.stable_step_s);
@@ -395,7 +411,7 @@ TEST(PlainStepper, RunsACaseAsTheFastOneDoes) {
   const auto plain = test::run_case(config);
   EXPECT_EQ(plain.event.steps, fast.event.steps);
   EXPECT_EQ(plain.node_updates_per_step, fast.node_updates_per_step);
-  const auto &a = plain.event.history, &b = fast.event.history;
+  const auto a = test::history_of(plain), b = test::history_of(fast);
   ASSERT_EQ(a.slip_m.size(), b.slip_m.size());
   const double slip_m =
       std::abs(*std::ranges::max_element(b.slip_m, {}, [](double s) { return std::abs(s); }));

@@ -248,8 +248,9 @@ TEST(Sequence, PrecursorsGrowFromAPusherUntilAllSlips) {
     with_fields.output.snapshot_times_s = {1e-5, 3e-5};
     const auto result = run_from(make_problem(with_fields), *initial, test::go_on);
     sequence.record_event(result);
-    ASSERT_FALSE(result.event.snapshots.empty());
-    for (const auto& snapshot : result.event.snapshots) {
+    const auto snapshots = test::snapshots_of(result, initial->n_nodes);
+    ASSERT_FALSE(snapshots.empty());
+    for (const auto& snapshot : snapshots) {
       for (const auto n : boundary::pushed_nodes(initial->mesh, config.machine.pusher))
         EXPECT_EQ(snapshot.v_m_per_s.x[n], 0);
       for (const auto n : initial->mesh.far_edge_nodes) EXPECT_EQ(snapshot.v_m_per_s.y[n], 0);
@@ -818,7 +819,7 @@ TEST(Sequence, SlowSlipLeadsToEventsUnderALawWithAState) {
     EXPECT_LE(begins.fastest_slip_rate_m_per_s, 1.1 * rate_m_per_s);
     const auto result = run_from(make_problem(config), *initial, test::go_on);
     // It goes on from the slip rates and the state with which slow slip has ended.
-    const auto& history = result.event.history;
+    const auto history = test::history_of(result);
     const std::size_t n = history.x_m.size();
     double fastest = 0;
     for (std::size_t k = 0; k < n; ++k) {

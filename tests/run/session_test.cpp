@@ -87,6 +87,7 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
     config.probes.x_m = {0.1013, 0.0507, 0.15, 0.033};
     config.probes.y_m = {0, 0.0123, 0.1, has_base_body(config) ? -0.02 : 0.07};
     config.probes.interval_s = 1.7e-6;
+    config.output.moment_rate = true;
     list.emplace_back(name, config);
   };
   using interface::EventKind;

@@ -52,7 +52,7 @@ TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
     const test::TemporaryFolder folder;
     test::write_snapshots(folder.path(), mesh.slabs, std::span(&snapshot, 1),
                           snapshot_contents(make_problem(config), mesh));
-    return test::read_file(folder / results::snapshot_file);
+    return test::read_file(folder / results::snapshot_output.file);
   };
   EXPECT_TRUE(written(rows) == written(whole));
 }

@@ -85,7 +85,7 @@ TEST_F(WrittenRun, HasTheFilesByTheirNames) {
   // Without snapshots there are no fields.
   const test::TemporaryFolder folder;
   auto result = s.result;
-  result.event.snapshots.clear();
+  result.rows.erase(results::snapshot_output.file);
   write(folder.path(), result, s.initial);
   names.erase("fields.vtkhdf");
   EXPECT_EQ(names_in(folder.path()), names);
@@ -192,7 +192,7 @@ void expect_same(const record::History& a, const record::History& b) {
 }
 
 TEST_F(WrittenRun, HistoryReadsBack) {
-  expect_same(test::read_history(s.folder / "interface.h5"), s.result.event.history);
+  expect_same(test::read_history(s.folder / "interface.h5"), test::history_of(s.result));
 }
 
 TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
@@ -224,8 +224,7 @@ std::filesystem::path run_streamed(const input::Case& config, const std::filesys
   };
   hooks.request = [&] { return stop ? Request::stop : Request::none; };
   const auto run = run_into(folder, make_problem(config), {}, hooks);
-  EXPECT_TRUE(run.last.result.event.history.time_s.empty());
-  EXPECT_TRUE(run.last.result.event.snapshots.empty());
+  EXPECT_TRUE(run.last.result.rows.empty());
   return status_of(run.last.result).name == "complete" ? dir : folder.unfinished();
 }
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "record/record.hpp"
+#include "results/outputs.hpp"
+#include "results/snapshots.hpp"
 #include "results/stream.hpp"
 
 /// Reads and writes files of results as a whole.
@@ -71,17 +73,28 @@ inline void write_history(const std::filesystem::path& file, const record::Histo
   results::finish(file, table);
 }
 
+/// A row of fields.vtkhdf.
+inline std::vector<double> row_of(const motion::Snapshot& snapshot) {
+  std::vector<double> row = {snapshot.time_s};
+  for (const auto* field : {&snapshot.u_m, &snapshot.v_m_per_s})
+    for (const auto* component : {&field->x, &field->y})
+      row.insert(row.end(), component->begin(), component->end());
+  return row;
+}
+
 /// DIR/fields.vtkhdf.
 inline void write_snapshots(const std::filesystem::path& dir, const mesh::Slabs& mesh,
                             std::span<const motion::Snapshot> snapshots,
-                            const results::SnapshotContents& contents = {},
-                            const std::vector<std::pair<std::size_t, std::size_t>>& seam = {}) {
-  const std::vector<double> x_m = {0};
-  results::ResultStream stream(
-      dir, {results::history_table(x_m), {contents.origin, snapshots.size(), mesh.n_nodes, seam}});
-  for (const auto& snapshot : snapshots) stream.snapshot(snapshot);
+                            const results::SnapshotContents& contents = {}, const results::Seam& seam = {}) {
+  results::ResultStream stream(dir,
+                               {results::snapshot_format(contents.origin, snapshots.size(), mesh.n_nodes)});
+  for (const auto& snapshot : snapshots) {
+    auto row = row_of(snapshot);
+    results::close_seam(std::span(row).subspan(1), 0, mesh.n_nodes, seam);
+    stream.sink(results::snapshot_output.file).put(std::move(row));
+  }
   stream.finish();
-  results::finish_snapshots(dir / results::snapshot_file, mesh, contents);
+  results::finish_snapshots(dir / results::snapshot_output.file, mesh, contents);
 }
 
 }  // namespace slipfront::test
