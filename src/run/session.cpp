@@ -26,10 +26,10 @@
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 #include "run/event_phase.hpp"
-#include "run/outputs.hpp"
 #include "run/sequence.hpp"
 #include "run/shared_states.hpp"
 #include "setup/event.hpp"
+#include "setup/outputs.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -101,9 +101,9 @@ class Session {
   std::size_t number() const { return sequence_->events().size() + 1; }
   fs::path slow_dir() const { return results::slow_folder(dir_, number()); }
   std::vector<results::RowFormat> slow_files() const {
-    auto setup = setup::output_setup(problem_, 0, 0, 0);
-    setup.x_m = sequence_->x_m();
-    return {results::history_output.format(setup)};
+    auto slow = setup::output_setup(problem_, 0, 0, 0);
+    slow.x_m = sequence_->x_m();
+    return {results::history_output.format(slow)};
   }
   fs::path event_dir() const { return sequence_ ? results::event_folder(dir_, number()) : dir_; }
   /// Where a finished event is, or the slow slip before it: with the sequence that this one extends perhaps.

@@ -15,8 +15,8 @@
 #include "results/folder.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
-#include "run/outputs.hpp"
 #include "run/run.hpp"
+#include "setup/outputs.hpp"
 #include "setup/snapshot_mesh.hpp"
 #include "setup/snapshot_plan.hpp"
 
