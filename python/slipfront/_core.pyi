@@ -54,23 +54,6 @@ class InterfaceState:
     def law_states(self) -> list[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
         """of the state variables of the friction law, in its order"""
 
-class Note:
-    """What to know of a case or its run that is not refused for it."""
-
-    def __init__(self, kind: str, text: str) -> None: ...
-
-    @property
-    def kind(self) -> str:
-        """units, resolution, physics or output; empty in folders of version 0.2"""
-
-    @property
-    def text(self) -> str:
-        """one line"""
-
-    def __str__(self) -> str: ...
-
-    def __repr__(self) -> str: ...
-
 class WaveSpeeds:
     """Wave speeds of a material."""
 
@@ -340,7 +323,7 @@ class Info:
         """of a case that gives forces, by its statics; else None"""
 
     @property
-    def notes(self) -> list[Note]:
+    def notes(self) -> list:
         """
         what is hardly meant, decides physics unasked, or keeps it from a rupture
         """

@@ -26,7 +26,8 @@ UNFINISHED = "unfinished"
 RUN, SEQUENCE = "run.json", "sequence.json"  # what tells of one
 RUN_FILES = (
     "run.json", "case.resolved.toml", "static.csv", "fronts.csv", "fracture.csv", "energy.csv",
-    "interface.h5", "fields.vtkhdf", "probes.h5", "moment_rate.h5", "sequence.json", "events.csv", "loading.csv",
+    "interface.h5", "fields.vtkhdf", "probes.h5", "moment_rate.h5",
+    "sequence.json", "events.csv", "loading.csv",
 )  # fmt: skip
 
 

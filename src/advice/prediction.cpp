@@ -81,6 +81,7 @@ double fewer_columns(const Problem& problem) {
 
 /// The case in larger elements where it has more of them than a prediction takes.
 Problem in_fewer_elements(Problem problem) {
+  problem.probes.clear();  // which may lie outside of lower bodies
   const auto& plate = problem.above().plate;
   const double columns = columns_of(plate), fewer = fewer_columns(problem);
   const bool held = is_held(problem);

@@ -16,12 +16,11 @@
 #include "motion/observer.hpp"
 #include "record/probes.hpp"
 #include "results/contents.hpp"
-#include "results/rows.hpp"
-#include "results/snapshots.hpp"
-#include "results/table.hpp"
 #include "solid/element.hpp"
 
 namespace slipfront::results {
+
+struct Table;
 
 /// What the outputs of an event are made of.
 struct OutputSetup {

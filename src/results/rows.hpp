@@ -66,28 +66,6 @@ void require_unchanged(const std::filesystem::path& path, std::uint64_t head_byt
 /// Compares what lies at a place in a file. @throws as require_unchanged
 void require_bytes(const std::filesystem::path& path, std::uint64_t place, std::span<const std::byte> bytes);
 
-/// A file of rows, of which each is a time and fields of as many numbers.
-struct RowFormat {
-  std::string file;
-  std::uint64_t head_bytes = 0;
-  std::vector<const char*> names = {};  ///< of the time and the fields
-  std::size_t n_places = 1;             ///< numbers of a field
-  /// Finishes it. A file without that is finished by others, and is there with its first row.
-  std::function<void(const std::filesystem::path& file)> finish = {};
-
-  std::size_t row_values() const { return 1 + (names.size() - 1) * n_places; }
-};
-
-/// Where the rows of a file go.
-class RowSink {
- public:
-  virtual ~RowSink() = default;
-  /// Takes rows, or the next piece of one.
-  virtual void put(std::vector<double> values) = 0;
-  /// Waits until there is room for a piece of so many bytes, which is yet to be made.
-  virtual void wait_for_room(std::size_t /*bytes*/) {}
-};
-
 /// Reads the rows of a file that is to be finished.
 class RowReader {
  public:

@@ -19,8 +19,6 @@ namespace slipfront::results {
 /// Rows of a fields.vtkhdf: the time, u_x, u_y, v_x and v_y [nodes].
 /// @param n_snapshots  for which the head has room
 RowFormat snapshot_format(const Origin& origin, std::size_t n_snapshots, std::size_t n_nodes);
-/// Nodes of the left edge of a periodic plate, and of the right one, which move as these.
-using Seam = std::vector<std::pair<std::size_t, std::size_t>>;
 /// That of a mesh whose nodes are numbered from `first` on.
 Seam seam(const mesh::Mesh& mesh, std::size_t first = 0);
 /// Gives the right edge the motion of the left one. @param place  of the values among those of a snapshot

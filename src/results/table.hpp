@@ -14,13 +14,6 @@
 
 namespace slipfront::results {
 
-/// A data set and its attributes.
-struct Description {
-  const char* name;
-  const char* unit;
-  const char* description;
-};
-
 template <class Record, class Value>
 Description description_of(const record::Column<Record, Value>& column) {
   return {column.name, column.unit, column.description};

@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "files/files.hpp"
 #include "results/outputs.hpp"
+#include "results/snapshots.hpp"
 #include "run/run.hpp"
 #include "setup/meshes.hpp"
 #include "setup/snapshot_mesh.hpp"

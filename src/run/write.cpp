@@ -14,6 +14,7 @@
 #include "problem/source.hpp"
 #include "results/folder.hpp"
 #include "results/results.hpp"
+#include "results/snapshots.hpp"
 #include "results/stream.hpp"
 #include "run/run.hpp"
 #include "setup/outputs.hpp"

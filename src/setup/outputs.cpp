@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "setup/outputs.hpp"
 
+#include "results/snapshots.hpp"
 #include "setup/snapshot_plan.hpp"
 
 namespace slipfront::setup {

@@ -40,6 +40,12 @@ def test_probes_have_names_places_units_and_rows(program, probed, tmp_path):
         assert probes["stress_yy_Pa"].values[0, 1] == pytest.approx(-file["p_Pa"][0, node], rel=0.2)
 
 
+def test_probes_far_from_a_prestressed_interface(program, tmp_path):
+    (tmp_path / "case.toml").write_text(require_done(program("new", "two-bodies")).stdout)
+    places = sets("probes.x_m=[0.05, 0.05]", "probes.y_m=[0.0101, -0.0303]")
+    require_done(program("validate", "case.toml", *places))
+
+
 def test_every_hdf5_file_says_where_it_comes_from(program, probed, tmp_path):
     require_done(program("run", probed, "-o", "out", "-q", *sets("output.snapshot_interval_s=20e-6")))
     case = (tmp_path / "out/case.resolved.toml").read_text(encoding="utf-8")

@@ -96,7 +96,7 @@ auto members(const Case& c) {
                     members<13>(loading), members(prestress), members(friction), members(friction_along_x),
                     tip, members<4>(regularisation), contact, event, members<6>(trigger),
                     members<8>(nucleation), members<7>(sequence), members<9>(time), members<7>(fronts),
-                    members<5>(output), members<4>(probes));
+                    members<6>(output), members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
@@ -163,7 +163,7 @@ Case changed_case() {
   c.time = {1.5,  true,    motion::StepperKind::plain, motion::Precision::single_precision, 7, 11, false,
             1e-4, infinity};
   c.fronts = {1e-3, fronts::SpeedInterval::approach, 2e-5, 3e-3, 0.625, 0.25, 6e-3};
-  c.output = {1e-7, {0, 1e-5, 3.3e-5}, 4e-5, false, 3e-5};
+  c.output = {1e-7, {0, 1e-5, 3.3e-5}, 4e-5, false, 3e-5, true};
   c.probes = {{0.01, 0.02}, {0.03, 0.05}, {"left", "b \\"}, 2e-6};
   return c;
 }

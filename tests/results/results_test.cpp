@@ -13,6 +13,7 @@
 #include "files/files.hpp"
 #include "histories.hpp"
 #include "mesh/plate.hpp"
+#include "results/table.hpp"
 #include "support/files.hpp"
 #include "support/results.hpp"
 

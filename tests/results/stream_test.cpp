@@ -12,6 +12,7 @@
 #include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "motion/stepper.hpp"
+#include "results/table.hpp"
 #include "support/files.hpp"
 #include "support/results.hpp"
 

@@ -10,6 +10,7 @@
 #include "results/outputs.hpp"
 #include "results/snapshots.hpp"
 #include "results/stream.hpp"
+#include "results/table.hpp"
 
 /// Reads and writes files of results as a whole.
 namespace slipfront::test {

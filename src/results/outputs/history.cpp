@@ -2,6 +2,8 @@
 // interface.h5: the history of the interface.
 #include "motion/observers/history_rows.hpp"
 #include "results/outputs.hpp"
+#include "results/rows.hpp"
+#include "results/table.hpp"
 
 namespace slipfront::results {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "results/outputs.hpp"
+#include "results/table.hpp"
 
 namespace slipfront::results {
 namespace {

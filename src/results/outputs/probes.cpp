@@ -3,6 +3,8 @@
 #include "motion/probes.hpp"
 
 #include "results/outputs.hpp"
+#include "results/rows.hpp"
+#include "results/table.hpp"
 
 namespace slipfront::results {
 namespace {
