@@ -12,55 +12,55 @@
 namespace slipfront::motion {
 
 Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBody> bodies)
-    : bodies_(std::move(bodies)),
-      contact_(contact),
-      interface_(bodies_.front().side->nodes.size(), contact.law.states()),
+    : contact_(contact),
+      interface_(bodies.front().side->nodes.size(), contact.law.states()),
       breakdown_(interface_.size()),
-      tributary_m_(bodies_.front().side->tributary_m),
+      tributary_m_(bodies.front().side->tributary_m),
       v_x_before_(interface_.size()),
       v_y_before_(interface_.size()),
       v_x_trial_(interface_.size()),
       v_y_trial_(interface_.size()),
       start_u_x_m_(interface_.size()),
-      own_begin_(static_cast<std::size_t>(bodies_.front().side->own.begin)),
-      own_end_(static_cast<std::size_t>(bodies_.front().side->own.end)) {
+      own_begin_(static_cast<std::size_t>(bodies.front().side->own.begin)),
+      own_end_(static_cast<std::size_t>(bodies.front().side->own.end)) {
   // Effective masses along x and y of each body.
   std::vector<std::vector<double>> mass_x, mass_y;
-  for (const auto& body : bodies_) {
-    SLIPFRONT_ASSERT(body.side->nodes.size() == interface_.size(), "interfaces of different nodes");
-    auto x = body.side->mass_kg;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto& side = *bodies[b].side;
+    SLIPFRONT_ASSERT(side.nodes.size() == interface_.size(), "interfaces of different nodes");
+    auto x = side.mass_kg;
     auto y = x;
-    for (const auto& dashpot : body.side->dashpots) {
+    for (const auto& dashpot : side.dashpots) {
       x[dashpot.at] *= 1 + dashpot.d_x;
       y[dashpot.at] *= 1 + dashpot.d_y;
     }
     mass_x.push_back(std::move(x));
     mass_y.push_back(std::move(y));
+    for (std::size_t i = 0; i < interface_.size(); ++i) interface_.initial_gap_m[i] += side.y_m[i];
+    const std::vector<double> ones(interface_.size(), 1), zeros(interface_.size(), 0);
+    sides_.push_back({bodies[b], sign_of_body(b), ones, ones, zeros});
   }
   contact_mass_kg_ = mass_y.front();
-  for (std::size_t i = 0; i < interface_.size(); ++i) {
-    interface_.initial_gap_m[i] = bodies_.front().side->y_m[i];
-    interface_.mass_per_length_kg_m2[i] = bodies_.front().side->mass_kg[i] / tributary_m_[i];
+  if (!is_pair()) {
+    const auto& side = *above().side;
+    for (std::size_t i = 0; i < interface_.size(); ++i)
+      interface_.mass_per_length_kg_m2[i] = side.mass_kg[i] / tributary_m_[i];
+    for (const auto& dashpot : side.dashpots) {
+      interface_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
+      interface_.tangential_mass_ratio[dashpot.at] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
+    }
+    return;
   }
-  for (const auto& dashpot : bodies_.front().side->dashpots) {
-    interface_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
-    interface_.tangential_mass_ratio[dashpot.at] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
-  }
-  if (bodies_.size() == 1) return;
   const auto of_pair = [](double a, double b) { return a * b / (a + b); };
   for (std::size_t s = 0; s < 2; ++s) {
-    Side side;
-    side.sign = sign_of_body(s);
-    for (auto* values : {&side.v_x, &side.v_y, &side.v_x_before, &side.v_y_before})
-      values->resize(interface_.size());
+    auto& side = sides_[s];
+    side.v_x = side.v_y = side.v_x_before = side.v_y_before = side.shift_m;
     for (std::size_t i = 0; i < interface_.size(); ++i) {
-      side.share_x.push_back(mass_x[1 - s][i] / (mass_x[0][i] + mass_x[1][i]));
-      side.share_y.push_back(mass_y[1 - s][i] / (mass_y[0][i] + mass_y[1][i]));
+      side.share_x[i] = mass_x[1 - s][i] / (mass_x[0][i] + mass_x[1][i]);
+      side.share_y[i] = mass_y[1 - s][i] / (mass_y[0][i] + mass_y[1][i]);
     }
-    sides_.push_back(std::move(side));
   }
   for (std::size_t i = 0; i < interface_.size(); ++i) {
-    interface_.initial_gap_m[i] += bodies_[1].side->y_m[i];
     contact_mass_kg_[i] = of_pair(mass_y[0][i], mass_y[1][i]);
     interface_.mass_per_length_kg_m2[i] = contact_mass_kg_[i] / tributary_m_[i];
     interface_.tangential_mass_ratio[i] = of_pair(mass_x[0][i], mass_x[1][i]) / contact_mass_kg_[i];
@@ -68,29 +68,40 @@ Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBo
 }
 
 double Coupling::relative_u_x_m(std::size_t i) const {
-  const auto u_x_m = [&](const ContactBody& body) { return body.u_m->x[body.side->nodes[i]]; };
-  return bodies_.size() == 1 ? u_x_m(bodies_[0]) : u_x_m(bodies_[0]) - u_x_m(bodies_[1]);
+  const double above_m = sides_[0].body.u_m(i).x;
+  return is_pair() ? above_m - sides_[1].body.u_m(i).x : above_m;
+}
+
+double Coupling::relative_u_y_m(std::size_t i) const {
+  const double above_m = sides_[0].body.u_m(i).y;
+  return is_pair() ? above_m + sides_[1].body.u_m(i).y : above_m;
+}
+
+void Coupling::take_velocities(Side& side) {
+  const auto to = velocities(side);
+  for (const auto& run : side.body.side->runs) {
+    std::copy_n(&side.body.v->x[run.first], run.count, &to.x[run.at]);
+    std::copy_n(&side.body.v->y[run.first], run.count, &to.y[run.at]);
+  }
+}
+
+void Coupling::set_relative_motion() {
+  for (const auto& run : above().side->runs)
+    std::copy_n(&above().u->y[run.first], run.count, &interface_.u_y_m[run.at]);
+  if (is_pair())
+    for (std::size_t i = 0; i < interface_.size(); ++i) {
+      interface_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
+      interface_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
+      interface_.u_y_m[i] = relative_u_y_m(i);
+    }
+  std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
 }
 
 void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
-  const auto& above = bodies_.front();
+  for (auto& side : sides_) take_velocities(side);
+  set_relative_motion();
   for (std::size_t i = 0; i < interface_.size(); ++i) {
     start_u_x_m_[i] = relative_u_x_m(i);
-    interface_.v_x_m_per_s[i] = above.v_m_per_s->x[above.side->nodes[i]];
-    interface_.v_y_m_per_s[i] = above.v_m_per_s->y[above.side->nodes[i]];
-  }
-  for (std::size_t s = 0; s < sides_.size(); ++s) {
-    for (std::size_t i = 0; i < interface_.size(); ++i) {
-      sides_[s].v_x[i] = bodies_[s].v_m_per_s->x[bodies_[s].side->nodes[i]];
-      sides_[s].v_y[i] = bodies_[s].v_m_per_s->y[bodies_[s].side->nodes[i]];
-    }
-    if (s == 0) continue;
-    for (std::size_t i = 0; i < interface_.size(); ++i) {
-      interface_.v_x_m_per_s[i] -= sides_[s].v_x[i];
-      interface_.v_y_m_per_s[i] += sides_[s].v_y[i];
-    }
-  }
-  for (std::size_t i = 0; i < interface_.size(); ++i) {
     interface_.slip_rate_m_per_s[i] = interface_.v_x_m_per_s[i];
     interface_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
     interface_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
@@ -139,9 +150,10 @@ void Coupling::add_to(StateView& state) {
   for (const auto* load : Loads::arrays(std::as_const(loads_)))
     if (!load->empty()) arrays.push_back(*load);
   arrays.push_back(start_u_x_m_);
-  for (auto& side : sides_) arrays.insert(arrays.end(), {side.v_x, side.v_y});
+  if (is_pair())
+    for (auto& side : sides_) arrays.insert(arrays.end(), {side.v_x, side.v_y});
   state.lists.push_back(
-      {StateKey::place, 0, interface_.size(), bodies_.front().side->nodes.data(), std::move(arrays)});
+      {StateKey::place, 0, interface_.size(), above().side->nodes.data(), std::move(arrays)});
   state.flags.push_back(&interface_.begun);
 }
 
@@ -160,20 +172,21 @@ void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, reco
   weaken(time_s);
   std::swap(interface_.v_x_m_per_s, v_x_before_);
   std::swap(interface_.v_y_m_per_s, v_y_before_);
-  if (sides_.empty())
-    gather(dt_s, impulse_s);
-  else
-    gather_both(dt_s, impulse_s);
-  std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
+  for (auto& side : sides_) {
+    std::swap(side.v_x, side.v_x_before);
+    std::swap(side.v_y, side.v_y_before);
+    take_velocities(side);
+    add_loads(side, dt_s, impulse_s);
+  }
+  set_relative_motion();
   if (sample != nullptr) append_law_states(*sample);
   const bool changed = interface::update_contact(contact_, dt_s, interface_);
   observer.observe(time_s, interface_, changed);
   follow_breakdown(dt_s, changed);
   if (sample != nullptr) append_sample(time_s, *sample);
-  if (sides_.empty())
-    scatter(dt_s, works);
-  else
-    scatter_both(dt_s, works);
+  if (contact_.algorithm == interface::ContactAlgorithm::predictor_corrector) take_shifts();
+  for (auto& side : sides_) is_pair() ? move_nodes<true>(side, dt_s) : move_nodes<false>(side, dt_s);
+  add_works_of_contact(dt_s, works);
   add_works_of_loads(dt_s, impulse_s, works);
 }
 
@@ -221,14 +234,10 @@ double Coupling::largest_acceleration_m_per_s2() const {
   return a;
 }
 
-void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, double impulse_s,
-                          const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
-                          std::vector<double>& v_x, std::vector<double>& v_y) const {
-  for (const auto& run : body.side->runs) {
-    std::copy_n(&body.v_m_per_s->x[run.first], run.count, &v_x[run.at]);
-    std::copy_n(&body.v_m_per_s->y[run.first], run.count, &v_y[run.at]);
-  }
-  const auto& mass = body.side->mass_kg;
+void Coupling::add_loads(Side& side, double dt_s, double impulse_s) {
+  const auto [v_x, v_y, v_x_before, v_y_before] = velocities(side);
+  const auto& mass = side.body.side->mass_kg;
+  const double sign = side.sign;
   for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * loads_.trigger_force_N_per_m[i] / mass[i];
   const double growth_t_Pa = prestress_growth_t_Pa_, growth_p_Pa = prestress_growth_p_Pa_;
   for (std::size_t i = 0; i < loads_.prestress_t_Pa.size(); ++i) {
@@ -236,125 +245,100 @@ void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, dou
     v_x[i] += sign * per_pressure * (loads_.prestress_t_Pa[i] + growth_t_Pa);
     v_y[i] -= per_pressure * (loads_.prestress_p_Pa[i] + growth_p_Pa);
   }
-  for (const auto& [i, n, d_x, d_y, spring] : body.side->dashpots) {
+  for (const auto& [i, n, d_x, d_y, spring] : side.body.side->dashpots) {
     // The contact's tractions act on the effective mass m (1 + d).
     v_x[i] = (v_x[i] - d_x * v_x_before[i]) / (1 + d_x);
     v_y[i] = (v_y[i] - d_y * v_y_before[i]) / (1 + d_y);
   }
 }
 
-void Coupling::gather(double dt_s, double impulse_s) {
-  const auto& body = bodies_.front();
-  for (const auto& run : body.side->runs)
-    std::copy_n(&body.u_m->y[run.first], run.count, &interface_.u_y_m[run.at]);
-  take_trial(body, 1, dt_s, impulse_s, v_x_before_, v_y_before_, interface_.v_x_m_per_s,
-             interface_.v_y_m_per_s);
-}
-
-void Coupling::gather_both(double dt_s, double impulse_s) {
-  for (std::size_t s = 0; s < 2; ++s) {
-    auto& side = sides_[s];
-    std::swap(side.v_x, side.v_x_before);
-    std::swap(side.v_y, side.v_y_before);
-    take_trial(bodies_[s], side.sign, dt_s, impulse_s, side.v_x_before, side.v_y_before, side.v_x, side.v_y);
-  }
-  for (std::size_t i = 0; i < interface_.size(); ++i) {
-    interface_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
-    interface_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
-    interface_.u_y_m[i] = u_y_m(0, i) + u_y_m(1, i);
-  }
-}
-
-void Coupling::scatter(double dt_s, record::Energies& works) {
-  const auto& body = bodies_.front();
-  auto& u = *body.u_m;
-  auto& v = *body.v_m_per_s;
-  if (contact_.algorithm == interface::ContactAlgorithm::predictor_corrector) {
-    for (std::size_t i = 0; i < interface_.size(); ++i) {
-      const double shift_m = interface_.u_y_m[i] - u.y[body.side->nodes[i]];
-      if (shift_m != 0) body.side->landing.add(i, shift_m);
+void Coupling::add_works_of_contact(double dt_s, record::Energies& works) const {
+  const auto& s = interface_;
+  // The impulse from the velocities: a landing by projection has no pressure.
+  const auto contact_work = [&](std::size_t i) {
+    return 0.5 * contact_mass_kg_[i] * (s.v_y_m_per_s[i] - v_y_trial_[i]) *
+           (s.v_y_m_per_s[i] + v_y_before_[i]);
+  };
+  const auto friction_work = [&](std::size_t i) {
+    return 0.5 * dt_s * tributary_m_[i] * s.t_Pa[i] * (s.v_x_m_per_s[i] + v_x_before_[i]);
+  };
+  const auto landing_work = [&](const Side& side) {
+    return side.body.side->landing.work(*side.body.u, *side.body.v, dt_s);
+  };
+  if (is_pair()) {
+    for (std::size_t i = own_begin_; i < own_end_; ++i) {
+      works.contact_work += contact_work(i);
+      works.friction_work -= friction_work(i);
     }
+    for (const auto& side : sides_) works.contact_work += landing_work(side);
+    return;
   }
   double all_contact_work = 0, all_friction_work = 0;
-  for (const auto& run : body.side->runs) {
-    double contact_work = all_contact_work, friction_work = all_friction_work;
-    const auto at = run.at, count = run.count;
-    const auto first = run.first;
-    const double* v_x_now = &interface_.v_x_m_per_s[at];
-    const double* v_y_now = &interface_.v_y_m_per_s[at];
-    const double* u_y_now = &interface_.u_y_m[at];
-    const double* t = &interface_.t_Pa[at];
-    const double* v_x_before = &v_x_before_[at];
-    const double* v_y_before = &v_y_before_[at];
-    const double* v_y_trial = &v_y_trial_[at];
-    const double* contact_mass = &contact_mass_kg_[at];
-    const double* tributary = &tributary_m_[at];
-    double* __restrict v_x = &v.x[first];
-    double* __restrict v_y = &v.y[first];
-    double* __restrict u_x = &u.x[first];
-    double* __restrict u_y = &u.y[first];
-#pragma omp simd reduction(+ : contact_work, friction_work)
-    for (std::size_t k = 0; k < count; ++k) {
-      // The impulse from the velocities: a landing by projection has no pressure.
-      contact_work += 0.5 * contact_mass[k] * (v_y_now[k] - v_y_trial[k]) * (v_y_now[k] + v_y_before[k]);
-      friction_work -= 0.5 * dt_s * tributary[k] * t[k] * (v_x_now[k] + v_x_before[k]);
-      v_x[k] = v_x_now[k];
-      v_y[k] = v_y_now[k];
-      u_x[k] += dt_s * v_x_now[k];
-      u_y[k] = u_y_now[k] + dt_s * v_y_now[k];
-    }
+  for (const auto& run : above().side->runs) {
     if (!run.is_owned) continue;
-    all_contact_work = contact_work;
-    all_friction_work = friction_work;
+#pragma omp simd reduction(+ : all_contact_work, all_friction_work)
+    for (std::size_t i = run.at; i < run.at + run.count; ++i) {
+      all_contact_work += contact_work(i);
+      all_friction_work -= friction_work(i);
+    }
   }
-  works.contact_work += all_contact_work + body.side->landing.work(u, v, dt_s);
+  works.contact_work += all_contact_work + landing_work(sides_.front());
   works.friction_work += all_friction_work;
 }
 
-void Coupling::scatter_both(double dt_s, record::Energies& works) {
-  const bool shifts = contact_.algorithm == interface::ContactAlgorithm::predictor_corrector;
+void Coupling::take_shifts() {
   for (std::size_t i = 0; i < interface_.size(); ++i) {
-    if (is_own(i)) {
-      works.contact_work += 0.5 * contact_mass_kg_[i] * (interface_.v_y_m_per_s[i] - v_y_trial_[i]) *
-                            (interface_.v_y_m_per_s[i] + v_y_before_[i]);
-      works.friction_work -=
-          0.5 * dt_s * tributary_m_[i] * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
-    }
-    const double shift_m = shifts ? interface_.u_y_m[i] - (u_y_m(0, i) + u_y_m(1, i)) : 0;
-    const double change_x = interface_.v_x_m_per_s[i] - v_x_trial_[i];
-    const double change_y = interface_.v_y_m_per_s[i] - v_y_trial_[i];
-    for (std::size_t s = 0; s < 2; ++s) {
-      auto& side = sides_[s];
-      const auto& body = bodies_[s];
-      const auto n = body.side->nodes[i];
-      side.v_x[i] += side.sign * side.share_x[i] * change_x;
-      side.v_y[i] += side.share_y[i] * change_y;
-      body.v_m_per_s->x[n] = side.v_x[i];
-      body.v_m_per_s->y[n] = side.v_y[i];
-      body.u_m->x[n] += dt_s * side.v_x[i];
-      body.u_m->y[n] += side.share_y[i] * shift_m + dt_s * side.v_y[i];
-      if (shift_m != 0) body.side->landing.add(i, side.share_y[i] * shift_m);
+    const double shift_m = interface_.u_y_m[i] - relative_u_y_m(i);
+    for (auto& side : sides_) {
+      side.shift_m[i] = side.share_y[i] * shift_m;
+      if (shift_m != 0) side.body.side->landing.add(i, side.shift_m[i]);
     }
   }
-  for (const auto& body : bodies_)
-    works.contact_work += body.side->landing.work(*body.u_m, *body.v_m_per_s, dt_s);
 }
 
-void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const {
-  const auto add_dashpots = [&](const ContactBody& body, const auto& v_x, const auto& v_y,
-                                const auto& v_x_before, const auto& v_y_before) {
-    for (const auto& dashpot : body.side->dashpots) {
+template <bool is_pair>
+void Coupling::move_nodes(Side& side, double dt_s) {
+  const auto& s = interface_;
+  const auto own = velocities(side);
+  if constexpr (is_pair)
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      own.x[i] += side.sign * side.share_x[i] * (s.v_x_m_per_s[i] - v_x_trial_[i]);
+      own.y[i] += side.share_y[i] * (s.v_y_m_per_s[i] - v_y_trial_[i]);
+    }
+  for (const auto& run : side.body.side->runs) {
+    const auto count = run.count;
+    const double* v_x_now = &own.x[run.at];
+    const double* v_y_now = &own.y[run.at];
+    const double* u_y_now = &s.u_y_m[run.at];
+    const double* shift = &side.shift_m[run.at];
+    double* __restrict v_x = &side.body.v->x[run.first];
+    double* __restrict v_y = &side.body.v->y[run.first];
+    double* __restrict u_x = &side.body.u->x[run.first];
+    double* __restrict u_y = &side.body.u->y[run.first];
+#pragma omp simd
+    for (std::size_t k = 0; k < count; ++k) {
+      v_x[k] = v_x_now[k];
+      v_y[k] = v_y_now[k];
+      u_x[k] += dt_s * v_x_now[k];
+      if constexpr (is_pair)
+        u_y[k] += shift[k] + dt_s * v_y_now[k];
+      else
+        u_y[k] = u_y_now[k] + dt_s * v_y_now[k];
+    }
+  }
+}
+
+void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) {
+  for (auto& side : sides_) {
+    const auto [v_x, v_y, v_x_before, v_y_before] = velocities(side);
+    for (const auto& dashpot : side.body.side->dashpots) {
       const auto i = dashpot.at;
       if (!is_own(i)) continue;
       works.boundary_work +=
-          boundary::dashpot_work(dashpot.d_x, dashpot.d_y, body.side->mass_kg[i],
+          boundary::dashpot_work(dashpot.d_x, dashpot.d_y, side.body.side->mass_kg[i],
                                  0.5 * (v_x[i] + v_x_before[i]), 0.5 * (v_y[i] + v_y_before[i]));
     }
-  };
-  if (sides_.empty())
-    add_dashpots(bodies_.front(), interface_.v_x_m_per_s, interface_.v_y_m_per_s, v_x_before_, v_y_before_);
-  for (std::size_t s = 0; s < sides_.size(); ++s)
-    add_dashpots(bodies_[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
+  }
   for (std::size_t i = own_begin_; i < std::min(own_end_, loads_.prestress_t_Pa.size()); ++i)
     works.prestress_work +=
         0.5 * dt_s * tributary_m_[i] *
@@ -370,24 +354,30 @@ record::History Coupling::interface_row(double time_s) const {
   record::History row;
   append_law_states(row);
   append_sample(time_s, row);
+  for (auto* values : members_of(row)) {
+    if (values == &row.time_s) continue;
+    values->erase(values->begin() + own_end_, values->end());
+    values->erase(values->begin(), values->begin() + own_begin_);
+  }
   return row;
+}
+
+static void append(std::vector<double>& to, const std::vector<double>& from) {
+  to.insert(to.end(), from.begin(), from.end());
 }
 
 void Coupling::append_law_states(record::History& history) const {
   history.law_states.resize(interface_.law_states.size());
   for (std::size_t k = 0; k < history.law_states.size(); ++k)
-    history.law_states[k].insert(history.law_states[k].end(), interface_.law_states[k].begin() + own_begin_,
-                                 interface_.law_states[k].begin() + own_end_);
+    append(history.law_states[k], interface_.law_states[k]);
 }
 
 void Coupling::append_sample(double time_s, record::History& history) const {
   history.time_s.push_back(time_s);
-  for (std::size_t i = own_begin_; i < own_end_; ++i) {
-    history.slip_m.push_back(slip_m(i));
-    history.slip_rate_m_per_s.push_back(interface_.slip_rate_m_per_s[i]);
-    history.t_Pa.push_back(interface_.t_Pa[i]);
-    history.p_Pa.push_back(interface_.p_Pa[i]);
-  }
+  for (std::size_t i = 0; i < interface_.size(); ++i) history.slip_m.push_back(slip_m(i));
+  append(history.slip_rate_m_per_s, interface_.slip_rate_m_per_s);
+  append(history.t_Pa, interface_.t_Pa);
+  append(history.p_Pa, interface_.p_Pa);
 }
 
 void Coupling::reverse() {

@@ -91,8 +91,9 @@ class Coupling {
       if (kind == interface::FieldKind::memory) visit(values.data() + nodes.begin, n);
     });
     breakdown_.for_each_array([&](auto& values) { visit(values.data() + nodes.begin, n); });
-    for (auto& side : sides_)
-      for (auto* values : {&side.v_x, &side.v_y}) visit(values->data() + nodes.begin, n);
+    if (is_pair())
+      for (auto& side : sides_)
+        for (auto* values : {&side.v_x, &side.v_y}) visit(values->data() + nodes.begin, n);
   }
   SlipRates slip_rates() const;
   /// Breakdown of own nodes.
@@ -106,40 +107,53 @@ class Coupling {
   void add_to(StateView& state);
 
  private:
-  /// One of two bodies. Velocities in its own axes.
+  /// One of the bodies. [nodes]
   struct Side {
-    double sign = 1;  ///< of its velocity along x in the relative one
-    std::vector<double> v_x, v_y;
-    std::vector<double> v_x_before, v_y_before;  ///< of the update under way
-    std::vector<double> share_x, share_y;        ///< of the relative motion's change
+    ContactBody body;
+    double sign = 1;                       ///< see sign_of_body
+    std::vector<double> share_x, share_y;  ///< of the relative motion's change
+    std::vector<double> shift_m;           ///< up to which it lands in the update under way
+    /// In its own axes, of two bodies; a single body's motion is the relative one.
+    std::vector<double> v_x = {}, v_y = {};
+    std::vector<double> v_x_before = {}, v_y_before = {};  ///< of the update under way
+  };
+  struct Velocities {
+    std::vector<double>&x, &y, &x_before, &y_before;
   };
 
+  bool is_pair() const { return sides_.size() == 2; }
+  const ContactBody& above() const { return sides_.front().body; }
+  /// Of a body's interface nodes, in its own axes.
+  Velocities velocities(Side& side) {
+    if (is_pair()) return {side.v_x, side.v_y, side.v_x_before, side.v_y_before};
+    return {interface_.v_x_m_per_s, interface_.v_y_m_per_s, v_x_before_, v_y_before_};
+  }
   bool is_own(std::size_t i) const { return i >= own_begin_ && i < own_end_; }
   double relative_u_x_m(std::size_t i) const;
-  double u_y_m(std::size_t body, std::size_t i) const {
-    return bodies_[body].u_m->y[bodies_[body].side->nodes[i]];
-  }
-  /// The trial motion of the interface nodes, all forces but the contact's included.
-  void gather(double dt_s, double impulse_s);
-  void gather_both(double dt_s, double impulse_s);
-  /// That of one body. @param sign  of its velocity along x in the relative one
-  void take_trial(const ContactBody& body, double sign, double dt_s, double impulse_s,
-                  const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
-                  std::vector<double>& v_x, std::vector<double>& v_y) const;
-  /// Gives the corrected velocities to the bodies and moves their nodes.
-  void scatter(double dt_s, record::Energies& works);
-  void scatter_both(double dt_s, record::Energies& works);
+  double relative_u_y_m(std::size_t i) const;
+  /// Reads the velocities of a body's interface nodes.
+  void take_velocities(Side& side);
+  /// Adds to them all forces but the contact's: the trial.
+  void add_loads(Side& side, double dt_s, double impulse_s);
+  /// The relative motion from those of the bodies.
+  void set_relative_motion();
+  /// The shifts of nodes that land, see Landing.
+  void take_shifts();
+  /// Gives the corrected velocities to a body and moves its nodes.
+  template <bool is_pair>
+  void move_nodes(Side& side, double dt_s);
+  void add_works_of_contact(double dt_s, record::Energies& works) const;
   /// Brings weakening nodes to this time.
   void weaken(double time_s);
   /// @param changed  update_contact's answer
   void follow_breakdown(double dt_s, bool changed);
-  void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const;
+  void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works);
   /// Before an update, which takes them on to the next one.
   void append_law_states(record::History& history) const;
   /// After it: what belongs to the same time.
   void append_sample(double time_s, record::History& history) const;
 
-  std::vector<ContactBody> bodies_;
+  std::vector<Side> sides_;  ///< the one above first
   interface::ContactModel contact_;
   interface::Interface interface_;
   interface::BreakdownMonitor breakdown_;
@@ -147,7 +161,6 @@ class Coupling {
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see boundary::Dashpot. [nodes]
   /// Relative, of the update under way. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;
-  std::vector<Side> sides_;                   ///< of two bodies; else none
   Loads loads_;                               ///< forces and strength_fraction of all nodes
   std::vector<std::size_t> trigger_nodes_;    ///< where the force is not zero
   std::vector<std::size_t> weakening_nodes_;  ///< whose friction falls during the event

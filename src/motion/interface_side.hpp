@@ -40,7 +40,9 @@ inline InterfaceSide make_interface_side(const mesh::Mesh& mesh, const std::vect
 /// What the contact reads and writes of a body.
 struct ContactBody {
   InterfaceSide* side;
-  solid::Field *u_m, *v_m_per_s;
+  solid::Field *u, *v;  ///< m, m/s
+  /// Of an interface node.
+  solid::Pair u_m(std::size_t i) const { return {u->x[side->nodes[i]], u->y[side->nodes[i]]}; }
 };
 
 template <class Body>
