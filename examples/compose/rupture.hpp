@@ -38,16 +38,19 @@ inline std::vector<double> rupture(const slipfront::interface::FrictionLaw& law,
   std::vector<motion::BodySource> bodies;  // a body below is the same mesh upside down
   for (const auto& material : materials) bodies.push_back({mesh, material});
   record::StaticState before;
-  motion::Loads loads;
+  std::vector<double> strength_fraction;
   for (const auto node : mesh.interface_nodes) {
     before.x_m.push_back(mesh.x_m[node]);
-    loads.strength_fraction.push_back(std::abs(mesh.x_m[node] - 0.1) <= 12.5e-3 ? 0 : 1);
+    strength_fraction.push_back(std::abs(mesh.x_m[node] - 0.1) <= 12.5e-3 ? 0 : 1);
   }
-  before.t_s_Pa = loads.prestress_t_Pa = std::vector(before.x_m.size(), 1.2e6);
-  before.p_s_Pa = loads.prestress_p_Pa = std::vector(before.x_m.size(), 2e6);
+  before.t_s_Pa = std::vector(before.x_m.size(), 1.2e6);
+  before.p_s_Pa = std::vector(before.x_m.size(), 2e6);
 
   motion::Stepper stepper(bodies, {.law = law}, motion::TimeStepping{}, motion::Execution{});
-  stepper.start(statics::prestressed(mesh, before, bodies.size() > 1 ? &mesh : nullptr), 0, loads);
+  const auto state = statics::prestressed(mesh, before, bodies.size() > 1 ? &mesh : nullptr);
+  auto loads = motion::prescribed_loads(state);
+  loads.strength_fraction = strength_fraction;
+  stepper.start(state, 0, loads);
   FirstSlips slips(before.x_m.size());
   while (stepper.time_s() < load_s) stepper.advance(slips);
   stepper.set_prestress(std::vector(before.x_m.size(), 0.0), loads.prestress_p_Pa);

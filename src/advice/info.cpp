@@ -202,7 +202,7 @@ double measured_rate_per_s(const Problem& problem, const Timed& timed, motion::T
   tractions.t_s_Pa.assign(n, 0.0);
   for (std::size_t k = 0; k < n / 2; ++k) tractions.t_s_Pa[k] = 1.1 * mu_s * tractions.p_s_Pa[k];
   const auto state = statics::prestressed(plate, tractions, timed.base);
-  stepper.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
+  stepper.start(state, 0, motion::prescribed_loads(state));
   motion::Recorder recorder(state, mu_s, 0);
   stepper.advance(recorder, 1, {});  // makes its pages and fills the caches
   const auto start = Clock::now();

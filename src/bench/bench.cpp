@@ -154,7 +154,7 @@ class SlippingPlate {
     tractions.t_s_Pa.assign(mesh.interface_nodes.size(), 0.7e6);
     std::fill_n(tractions.t_s_Pa.begin(), mesh.interface_nodes.size() / 2, 1.4e6);
     const auto state = statics::prestressed(mesh, tractions);
-    stepper_.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
+    stepper_.start(state, 0, motion::prescribed_loads(state));
     return {state, interface::VelocityWeakening{}.mu_s, 1};
   }
 

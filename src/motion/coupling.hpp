@@ -53,6 +53,11 @@ struct Loads {
   }
 };
 
+/// Tractions that prescribe a state, see statics::prestressed.
+inline Loads prescribed_loads(const statics::Equilibrium& state) {
+  return {.prestress_t_Pa = state.tractions.t_s_Pa, .prestress_p_Pa = state.tractions.p_s_Pa};
+}
+
 /// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface
 /// nodes face each other.
 ///

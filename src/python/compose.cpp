@@ -137,17 +137,17 @@ class Stepper {
   void start(const nb::object& t_Pa, const nb::object& p_Pa, const nb::object& strength_fraction,
              double shear_speed_m_per_s) {
     const auto n = x_m_.size();
-    motion::Loads loads{.prestress_t_Pa = at_nodes(t_Pa, n, "t_Pa"),
-                        .prestress_p_Pa = at_nodes(p_Pa, n, "p_Pa"),
-                        .strength_fraction = at_nodes(strength_fraction, n, "strength_fraction")};
-    if (!std::ranges::all_of(loads.prestress_p_Pa, [](double p) { return p > 0; }))
+    const record::StaticState before{x_m_, at_nodes(t_Pa, n, "t_Pa"), at_nodes(p_Pa, n, "p_Pa")};
+    auto shares = at_nodes(strength_fraction, n, "strength_fraction");
+    if (!std::ranges::all_of(before.p_s_Pa, [](double p) { return p > 0; }))
       throw UserError("p_Pa must be above 0 at all nodes: the whole interface starts in contact");
-    if (!std::ranges::all_of(loads.strength_fraction, [](double share) { return share >= 0 && share <= 1; }))
+    if (!std::ranges::all_of(shares, [](double share) { return share >= 0 && share <= 1; }))
       throw UserError("strength_fraction must be between 0 and 1");
     if (has_gaps(above_))
       throw UserError("start needs a mesh with corner = none: the whole interface starts in contact");
-    const auto state = statics::prestressed(above_.mesh, {x_m_, loads.prestress_t_Pa, loads.prestress_p_Pa},
-                                            below_ ? &below_->mesh : nullptr);
+    const auto state = statics::prestressed(above_.mesh, before, below_ ? &below_->mesh : nullptr);
+    auto loads = motion::prescribed_loads(state);
+    loads.strength_fraction = std::move(shares);
     begin(state, shear_speed_m_per_s, std::move(loads));
   }
 

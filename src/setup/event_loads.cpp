@@ -139,8 +139,7 @@ motion::Loads event_loads(const Problem& problem, const statics::Equilibrium& st
                           const std::vector<double>& healed) {
   motion::Loads loads;
   if (problem.is_prestressed()) {
-    loads.prestress_t_Pa = state.tractions.t_s_Pa;
-    loads.prestress_p_Pa = state.tractions.p_s_Pa;
+    loads = motion::prescribed_loads(state);
     loads.prestress_rate = {problem.prestress->t_rate_Pa_per_s, problem.prestress->p_rate_Pa_per_s};
   }
   const auto tributary_m = mesh::tributary_lengths_m(mesh);
