@@ -354,30 +354,24 @@ record::History Coupling::interface_row(double time_s) const {
   record::History row;
   append_law_states(row);
   append_sample(time_s, row);
-  for (auto* values : members_of(row)) {
-    if (values == &row.time_s) continue;
-    values->erase(values->begin() + own_end_, values->end());
-    values->erase(values->begin(), values->begin() + own_begin_);
-  }
   return row;
-}
-
-static void append(std::vector<double>& to, const std::vector<double>& from) {
-  to.insert(to.end(), from.begin(), from.end());
 }
 
 void Coupling::append_law_states(record::History& history) const {
   history.law_states.resize(interface_.law_states.size());
   for (std::size_t k = 0; k < history.law_states.size(); ++k)
-    append(history.law_states[k], interface_.law_states[k]);
+    history.law_states[k].insert(history.law_states[k].end(), interface_.law_states[k].begin() + own_begin_,
+                                 interface_.law_states[k].begin() + own_end_);
 }
 
 void Coupling::append_sample(double time_s, record::History& history) const {
   history.time_s.push_back(time_s);
-  for (std::size_t i = 0; i < interface_.size(); ++i) history.slip_m.push_back(slip_m(i));
-  append(history.slip_rate_m_per_s, interface_.slip_rate_m_per_s);
-  append(history.t_Pa, interface_.t_Pa);
-  append(history.p_Pa, interface_.p_Pa);
+  for (std::size_t i = own_begin_; i < own_end_; ++i) {
+    history.slip_m.push_back(slip_m(i));
+    history.slip_rate_m_per_s.push_back(interface_.slip_rate_m_per_s[i]);
+    history.t_Pa.push_back(interface_.t_Pa[i]);
+    history.p_Pa.push_back(interface_.p_Pa[i]);
+  }
 }
 
 void Coupling::reverse() {
