@@ -83,6 +83,7 @@ OUTSIDE = [
     "fronts",
     "record",
     "input",
+    "setup/initial_state.hpp",
     "run/run.hpp",
 ]
 INSTALLED_WITH = {"fmt", "unistd.h", "immintrin.h"}
