@@ -86,14 +86,16 @@ void Coupling::take_velocities(Side& side) {
 }
 
 void Coupling::set_relative_motion() {
-  for (const auto& run : above().side->runs)
-    std::copy_n(&above().u->y[run.first], run.count, &interface_.u_y_m[run.at]);
-  if (is_pair())
+  if (is_pair()) {
     for (std::size_t i = 0; i < interface_.size(); ++i) {
       interface_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
       interface_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
       interface_.u_y_m[i] = relative_u_y_m(i);
     }
+  } else {
+    for (const auto& run : above().side->runs)
+      std::copy_n(&above().u->y[run.first], run.count, &interface_.u_y_m[run.at]);
+  }
   std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
 }
 

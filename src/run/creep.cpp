@@ -143,7 +143,7 @@ void Creep::begin() {
   slow_.start(sample_.rest.time_s, sample_.rest.shear_m, sample_.rest.contact, sample_.rest.u_x_m,
               sample_.rest.law_states);
   const auto& state = slow_.state();
-  if (sample_.n_events == 0 && state.fastest_m_per_s() >= inertia_slip_rate_m_per_s(sample_.problem))
+  if (sample_.events.empty() && state.fastest_m_per_s() >= inertia_slip_rate_m_per_s(sample_.problem))
     throw UserError(
         "normal loading alone lets the interface slip at {:.3g} m/s, where an event begins; choose a larger "
         "{} or a smaller {}",

@@ -76,7 +76,8 @@ LoadingRow Sample::row(LoadingPhase phase, double time_s, double shear_m,
                        const record::StaticState& tractions) const {
   LoadingRow row = loading.empty() ? LoadingRow{} : loading.back();
   row.phase = phase;
-  row.n_events = static_cast<std::int32_t>(n_events) + (is_of_event(phase) ? 1 : 0);  // not yet among them
+  row.n_events =
+      static_cast<std::int32_t>(events.size()) + (is_of_event(phase) ? 1 : 0);  // not yet among them
   row.shear_m = shear_m;
   row.time_s = time_s;
   row.energies.time_s = row.time_s;

@@ -71,9 +71,9 @@ struct Sample {
   std::optional<solid::Operator> base;
   motion::Monitor monitor;
 
-  RestState rest;                ///< of a law that sticks empty before the first event
-  statics::Equilibrium at_rest;  ///< of it
-  std::size_t n_events = 0;      ///< that have come to rest
+  RestState rest;                             ///< of a law that sticks empty before the first event
+  statics::Equilibrium at_rest;               ///< of it
+  std::vector<record::SequenceEvent> events;  ///< that have come to rest
   std::vector<record::LoadingRow> loading;
   std::size_t n_rows_at_rest = 0;  ///< of loading, until the last event has ended
 };

@@ -33,9 +33,9 @@ Sequence::Sequence(const Problem& problem, const motion::Monitor& monitor, const
 
 std::string Sequence::end() const {
   const auto& sequence = sample_.problem.sequence;
-  if (std::ssize(events_) >= sequence.max_events)
+  if (std::ssize(sample_.events) >= sequence.max_events)
     return fmt::format("sequence.max_events = {} was reached", sequence.max_events);
-  if (sequence.to_global_sliding && !events_.empty() && events_.back().is_global != 0)
+  if (sequence.to_global_sliding && !sample_.events.empty() && sample_.events.back().is_global != 0)
     return "all nodes inside have slipped in one event";
   return {};
 }
@@ -96,8 +96,7 @@ void Sequence::record_event(const Result& result) {
   sample_.n_rows_at_rest = sample_.loading.size();
   auto done = sequence_event(result, sample_.initial, begins, rests, sample_.at_rest.tractions);
   if (!(done.longest_patch_m < done.nucleation_length_m)) predict(done);
-  events_.push_back(done);
-  sample_.n_events = events_.size();
+  sample_.events.push_back(done);
   u_begins_x_m_.clear();
 }
 
@@ -130,20 +129,19 @@ void Sequence::serialize(StateArchive& archive) {
   if (!archive.is_loading() && !is_in_event() && !is_creeping) rows.resize(sample_.n_rows_at_rest);
   archive(sample_.rest.time_s, sample_.rest.moved_m, sample_.rest.shear_m, sample_.rest.contact,
           sample_.rest.u_x_m, sample_.rest.law_states, sample_.rest.rests_since_s, u_begins_x_m_,
-          sample_.n_rows_at_rest, rows, events_, is_creeping);
+          sample_.n_rows_at_rest, rows, sample_.events, is_creeping);
   if (!archive.is_loading()) {
     if (is_creeping) creep_->serialize(archive);
     return;
   }
   sample_.loading = std::move(rows);
-  sample_.n_events = events_.size();
   const std::size_t n = sample_.initial.tributary_m.size();
-  const std::size_t n_at_rest = creep_ || !events_.empty() ? n : 0;
+  const std::size_t n_at_rest = creep_ || !sample_.events.empty() ? n : 0;
   const auto is_of = [](const std::vector<double>& values, std::size_t size) {
     return values.size() == size &&
            std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   };
-  const std::size_t n_rows = 1 + 3 * events_.size() + (is_in_event() ? 1 : 0);
+  const std::size_t n_rows = 1 + 3 * sample_.events.size() + (is_in_event() ? 1 : 0);
   require_possible(
       sample_.rest.contact.size() == n_at_rest &&
           std::ranges::all_of(sample_.rest.contact,
@@ -160,7 +158,7 @@ void Sequence::serialize(StateArchive& archive) {
           std::ranges::all_of(sample_.loading,
                               [](const record::LoadingRow& row) { return row.phase <= LoadingPhase::creep; }),
       "a sequence");
-  if (!events_.empty()) sample_.equilibrate();
+  if (!sample_.events.empty()) sample_.equilibrate();
   if (!is_creeping) return;
   require_possible(creep_.has_value() && !is_in_event(), "slow slip");
   creep_->serialize(archive);

@@ -38,7 +38,7 @@ class Sequence {
   /// Finds the equilibrium behind the event that has begun so, and has come to rest.
   void record_event(const Result& result);
 
-  const std::vector<record::SequenceEvent>& events() const { return events_; }
+  const std::vector<record::SequenceEvent>& events() const { return sample_.events; }
   const std::vector<record::LoadingRow>& loading() const { return sample_.loading; }
 
   /// Whether slow slip is under way; the monitor is asked after each of its steps.
@@ -64,7 +64,6 @@ class Sequence {
   std::optional<Creep> creep_;                       ///< of a law that never sticks
   /// Where the event under way has begun. [interface nodes] relative to a base
   std::vector<double> u_begins_x_m_;
-  std::vector<record::SequenceEvent> events_;
 };
 
 }  // namespace slipfront::run

@@ -40,7 +40,7 @@ bool stick_to_next(Sample& sample) {
   // Where a share is passed at rest, there may be no shear that brings it about: a strength with a memory
   // leaves nodes beyond mu_s.
   const auto at_share = [&](double share) {
-    if (sample.n_events > 0 && sample.statics.share_of_strength(sample.at_rest) >= share)
+    if (!sample.events.empty() && sample.statics.share_of_strength(sample.at_rest) >= share)
       return sample.at_rest;
     auto state = sample.statics.shear_to(share);
     return state.shear_m > sample.at_rest.shear_m ? state : sample.at_rest;
