@@ -99,7 +99,7 @@ Diagnostics add_well_posedness(const Problem& problem, const mesh::Mesh& mesh, I
         stability::well_posedness(materials_of(problem), law, pressure_Pa, problem.element_size_m(),
                                   problem.width_m(), problem.friction.regularisation);
     if (!here.has_verdict())
-      notes.add(Diagnostic::Kind::physics, "uniform sliding{}: {}",
+      notes.add(Diagnostic::physics, "uniform sliding{}: {}",
                 std::isnan(x_m) ? "" : fmt::format(" with the friction at x = {:.4g} m", x_m),
                 here.statement);
     if (!worst.statement.empty() && !is_worse(here, worst)) return;
@@ -116,7 +116,7 @@ Diagnostics add_well_posedness(const Problem& problem, const mesh::Mesh& mesh, I
   if (can_slip.empty()) {
     worst.fastest_growth_per_s = nan;
     worst.statement = "no verdict: t is too far below the strength for any node to slip";
-    notes.add(Diagnostic::Kind::physics, "uniform sliding: {}", worst.statement);
+    notes.add(Diagnostic::physics, "uniform sliding: {}", worst.statement);
     return notes;
   }
   for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, problem.friction.regularisation))
@@ -347,7 +347,7 @@ Info info(const Problem& problem, const std::optional<int>& n_processes) {
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info) +
                     expected_rest_s(info) + expected_slow_s(info);
   info.notes = notes_of_case(problem, info.rupture, info.step_s);
-  if (!not_loaded.empty()) info.notes.add(Diagnostic::Kind::physics, "{}", not_loaded);
+  if (!not_loaded.empty()) info.notes.add(Diagnostic::physics, "{}", not_loaded);
   info.notes.add(notes_on_sliding);
   if (n_processes) info.shared = shared_by(problem, meshes, timed, *n_processes, info);
   return info;

@@ -15,22 +15,20 @@
 namespace slipfront::advice {
 namespace {
 
-using enum Diagnostic::Kind;
-
 /// A table that reaches beyond the plate may have its positions in another unit.
 void add_table(const char* key, const std::vector<double>& x_m, double width_m, Diagnostics& notes) {
   const double tolerance_m = 1e-6 * width_m;
   const auto is_beyond = [&](double x) { return x < -tolerance_m || x > width_m + tolerance_m; };
   const auto n_beyond = std::ranges::count_if(x_m, is_beyond);
   if (n_beyond == 0) return;
-  notes.add(units,
+  notes.add(Diagnostic::units,
             "the table of {} reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of its {} "
             "rows lie beyond it; are its positions in m?",
             key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
 }
 
 void add_note(const std::string& key, double value, const char* question, Diagnostics& notes,
-              Diagnostic::Kind kind = units) {
+              Diagnostic::Kind kind = Diagnostic::units) {
   notes.add(kind, "{} = {:g}: {}", key, value, question);
 }
 
@@ -45,16 +43,16 @@ void add_odd_units(const std::string& table, const solid::Material& m, double wi
   if (m.poissons_ratio < -0.99)
     add_note(table + ".poissons_ratio", m.poissons_ratio,
              "near -1 the body hardly resists a change of volume beside one of shape, and rounding grows",
-             notes, resolution);
+             notes, Diagnostic::resolution);
   if (m.poissons_ratio > 0.49 && m.plane == solid::Plane::strain)
     add_note(
         table + ".poissons_ratio", m.poissons_ratio,
         "near 0.5 in plane strain elements of four nodes are too stiff (volumetric locking), the more the "
         "coarser",
-        notes, resolution);
+        notes, Diagnostic::resolution);
   const double damping_length_m = m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
   if (damping_length_m > 0.1 * width_m)
-    notes.add(units,
+    notes.add(Diagnostic::units,
               "{}.stiffness_damping_s = {:g}: damps all waves shorter than {:.3g} m, the plate's width "
               "is {:g} m; is it beta_R in s, no loss factor?",
               table, m.stiffness_damping_s, damping_length_m, width_m);
@@ -94,7 +92,7 @@ void add_odd_pressures(const Problem& problem, Diagnostics& notes) {
     const double strain = nominal_pressure_Pa(problem) / E_Pa;
     if (strain > max_strain)
       notes.add(
-          units, "the {} the plate by {:.3g} of Young's modulus{}, beyond small strains: {}?",
+          Diagnostic::units, "the {} the plate by {:.3g} of Young's modulus{}, beyond small strains: {}?",
           problem.loading.mean_pressure_Pa || problem.loading.normal_force_N_per_m ? "normal force presses"
                                                                                    : "tilt presses",
           strain, E_Pa < problem.above().material.youngs_modulus_Pa ? " of the base" : "",
@@ -119,8 +117,9 @@ void add_lengths(const Problem& problem, Diagnostics& notes) {
   const double min_m = fewest_elements * problem.element_size_m();
   const auto add_short = [&](const char* key, double length_m) {
     if (length_m < (1 - 1e-9) * min_m)
-      notes.add(resolution, "{} = {:.4g} m is less than two elements, {:.4g} m: the mesh does not resolve it",
-                key, length_m, min_m);
+      notes.add(Diagnostic::resolution,
+                "{} = {:.4g} m is less than two elements, {:.4g} m: the mesh does not resolve it", key,
+                length_m, min_m);
   };
   if (interface::is_at_edge(problem.start.kind))
     add_short("event.trigger_zone_m", problem.start.trigger.zone_m);
@@ -131,12 +130,12 @@ void add_lengths(const Problem& problem, Diagnostics& notes) {
               problem.start.nucleation.half_length_m + problem.start.nucleation.reach_m());
   if (problem.start.kind == interface::EventKind::nucleation &&
       2 * problem.start.nucleation.half_length_m > problem.width_m())
-    notes.add(units,
+    notes.add(Diagnostic::units,
               "nucleation.half_length_m = {:g}: the patch is longer than the interface, {:g} m; is it in m?",
               problem.start.nucleation.half_length_m, problem.width_m());
   const double zone_m = interface::is_at_edge(problem.start.kind) ? problem.start.trigger.zone_m : 0;
   if (zone_m + problem.fronts.trigger_margin_m > 0.5 * problem.width_m())
-    notes.add(output,
+    notes.add(Diagnostic::output,
               "fronts.trigger_margin_m = {:.4g} m leaves less than half of the interface to t_d and p_d",
               problem.fronts.trigger_margin_m);
   // Beside the interface displacements bend within an element.
@@ -145,7 +144,7 @@ void add_lengths(const Problem& problem, Diagnostics& notes) {
     return place.y_m != 0 && std::abs(place.y_m) < (1 - 1e-9) * min_m;
   };
   if (const auto n = std::ranges::count_if(probes, is_beside); n > 0)
-    notes.add(resolution,
+    notes.add(Diagnostic::resolution,
               "probes: {} of {} are less than two elements, {:.4g} m, from the interface: strains and "
               "stresses there are those of the mesh; choose a smaller plate.element_size_m",
               n, probes.size(), min_m);
@@ -160,7 +159,7 @@ void add_rows_beside_nodes(const Problem& problem, Diagnostics& notes) {
     const double node_x_m = h_m * std::round(x_m / h_m);
     const double off_m = x_m - node_x_m;
     if (off_m > 1e-9 * h_m && off_m <= problem::position_tolerance * problem.width_m())
-      notes.add(resolution,
+      notes.add(Diagnostic::resolution,
                 "friction.file: the row at x = {} m counts for the node at {:g} m, {:.2g} m before it, "
                 "as well; put rows of a stepwise table between nodes",
                 x_m, node_x_m, off_m);
@@ -175,7 +174,7 @@ void add_sequence(const Problem& problem, Diagnostics& notes) {
   for (const auto& body : problem.bodies) c_S = std::min(c_S, solid::shear_speed_m_per_s(body.material));
   const double period_s = 4 * problem.greatest_height_m() / c_S;
   if (problem.time.quiet_s < few * period_s)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "time.quiet_s = {:g} s is far below 4 H/c_S = {:.3g} s: waves of an event that come back "
               "later count for nothing, or begin the next event",
               problem.time.quiet_s, period_s);
@@ -186,7 +185,7 @@ void add_sequence(const Problem& problem, Diagnostics& notes) {
       interface::static_coefficient(problem.friction.law) * nominal_pressure_Pa(problem);
   if (strength_Pa > 0 && wave_Pa > most_of_strength * strength_Pa)
     notes.add(
-        physics,
+        Diagnostic::physics,
         "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: between events it is "
         "taken for static, and in them it works; are {} slow enough?",
         load_m_per_s, wave_Pa / strength_Pa,
@@ -203,7 +202,7 @@ void add_pusher(const Problem& problem, Diagnostics& notes) {
   constexpr double most = 0.9;
   const double share = (pusher.to_m - pusher.from_m) / problem.above().plate.height_m;
   if (pusher.is_there() && share > most)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "the pusher covers {:.3g} % of the side (loading.pusher_from_m, pusher_to_m): the side "
               "stays straight",
               100 * share);
@@ -215,7 +214,7 @@ void add_tip_rate(const Problem& problem, Diagnostics& notes) {
   if (!problem.friction.law.never_sticks() || !problem.friction.tip_slip_rate_m_per_s) return;
   const double usual_m_per_s = default_tip_slip_rate_m_per_s(problem);
   if (*problem.friction.tip_slip_rate_m_per_s < few * usual_m_per_s)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "friction.tip_slip_rate_m_per_s = {:g}: far below {:.3g} m/s, where radiation takes over: a "
               "tip may be the shear wave that runs ahead of the rupture",
               *problem.friction.tip_slip_rate_m_per_s, usual_m_per_s);
@@ -226,7 +225,7 @@ void add_damping(const Problem& problem, Diagnostics& notes) {
   const auto bodies = materials_of(problem);
   const double of_plate_s = bodies.above.stiffness_damping_s;
   if (bodies.below && stability::are_alike(bodies) && of_plate_s != bodies.below->stiffness_damping_s)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "the two bodies are of one material, but material.stiffness_damping_s is {:g} and "
               "base.stiffness_damping_s {:g}: waves and slip are not symmetric",
               of_plate_s, bodies.below->stiffness_damping_s);
@@ -234,7 +233,7 @@ void add_damping(const Problem& problem, Diagnostics& notes) {
   const double least_s = std::min(of_plate_s, bodies.below ? bodies.below->stiffness_damping_s : of_plate_s);
   if (least_s < (1 - 1e-9) * advised_s)
     notes.add(
-        resolution,
+        Diagnostic::resolution,
         "friction follows the pressure at once between bodies that differ, with damping of {:g} s: waves of "
         "3 to 4 elements can grow on the mesh alone, and arrivals be wrong; {} = {:.3g} damps them (or use "
         "[friction] regularisation)",
@@ -254,7 +253,7 @@ void add_stiff_machine(const Problem& problem, Diagnostics& notes) {
   yields_m_per_Pa += 1 / machine.shear_stiffness_Pa_per_m;
   const double ratio = 1 / (yields_m_per_Pa * critical_Pa_per_m);
   if (critical_Pa_per_m > 0 && ratio > 1)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "block and machine have {:.3g} times the critical stiffness (b - a) p/d_c = {:.3g} Pa/m: "
               "slip may stay slow without an event, until sequence.end_s or the end of a path",
               ratio, critical_Pa_per_m);
@@ -270,7 +269,7 @@ void add_free_sides(const Problem& problem, Diagnostics& notes) {
                                                           : t_Pa.front() != 0 || t_Pa.back() != 0;
   if (is_free && is_sheared)
     notes.add(
-        physics,
+        Diagnostic::physics,
         "sides are free, but t is prescribed up to the corners: free sides bear no shear, so that this is no "
         "state of equilibrium, and pressures at the corners are not those of a block; use absorbing sides, "
         "or loading.method = direct");
@@ -286,13 +285,14 @@ void add_times(const Problem& problem, double step_s, Diagnostics& notes) {
   const double arrival_s = way_m / solid::shear_speed_m_per_s(problem.above().material);
   if (problem.time.end_s < arrival_s)
     notes.add(
-        physics, "time.end_s = {:.4g} s is before a shear wave {}, at {:.4g} s", problem.time.end_s,
+        Diagnostic::physics, "time.end_s = {:.4g} s is before a shear wave {}, at {:.4g} s",
+        problem.time.end_s,
         way_m < width_m ? "from the patch has reached both ends of the interface" : "has crossed the plate",
         arrival_s);
   constexpr double most_steps = 1e8;
   if (problem.time.end_s > 1e3 * width_m / solid::shear_speed_m_per_s(problem.above().material) ||
       problem.time.end_s > most_steps * step_s)
-    notes.add(units,
+    notes.add(Diagnostic::units,
               "time.end_s = {:g} s is {:.2g} steps, and {:.2g} times what a shear wave takes to cross "
               "the plate; is it in s?",
               problem.time.end_s, problem.time.end_s / step_s,
@@ -300,12 +300,12 @@ void add_times(const Problem& problem, double step_s, Diagnostics& notes) {
   if (const double p_Pa = nominal_pressure_Pa(problem),
       rate = problem.prestress ? -problem.prestress->p_rate_Pa_per_s : 0;
       rate * problem.time.end_s > p_Pa)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "prestress.p_rate_Pa_per_s takes the mean pressure to 0 at {:.4g} s: from there on the "
               "interface opens, and what moves without contact does not count as slip",
               p_Pa / rate);
   if (problem.start.is_by_force() && problem.start.trigger.ramp_s > problem.time.end_s)
-    notes.add(physics, "event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",
+    notes.add(Diagnostic::physics, "event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",
               problem.start.trigger.ramp_s, problem.time.end_s);
 }
 
@@ -324,12 +324,13 @@ Diagnostics notes_of_case(const Problem& problem, const RuptureOutlook& rupture,
   add_rows_beside_nodes(problem, notes);
   const auto& along_x = problem.friction.along_x;
   if (along_x.random_key != "none" && along_x.random_correlation_length_m < problem.element_size_m())
-    notes.add(resolution,
+    notes.add(Diagnostic::resolution,
               "friction.random_correlation_length_m = {:.4g} m is below the element size: the mesh "
               "does not resolve the field",
               along_x.random_correlation_length_m);
   if (problem.fronts.l_star_m < 0.99 * problem.element_size_m())
-    notes.add(resolution, "fronts.l_star_m = {:.4g} m is below the element size: one element is used",
+    notes.add(Diagnostic::resolution,
+              "fronts.l_star_m = {:.4g} m is below the element size: one element is used",
               problem.fronts.l_star_m);
   for (const auto& body : problem.bodies)
     add_odd_units(&body == &problem.above() ? "material" : "base", body.material, problem.width_m(), notes);
@@ -345,8 +346,8 @@ Diagnostics notes_of_case(const Problem& problem, const RuptureOutlook& rupture,
   add_pusher(problem, notes);
   add_tip_rate(problem, notes);
   if (problem.time.step_factor > 1)
-    notes.add(resolution, "the step is above the largest stable one (time.allow_unstable)");
-  for (const auto& doubt : rupture.doubts) notes.add(physics, "{}", doubt);
+    notes.add(Diagnostic::resolution, "the step is above the largest stable one (time.allow_unstable)");
+  for (const auto& doubt : rupture.doubts) notes.add(Diagnostic::physics, "{}", doubt);
   notes.add(rupture.notes);
   notes.add(setup::snapshot_plan(problem, step_s).notes);
   return notes;

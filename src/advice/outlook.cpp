@@ -221,13 +221,13 @@ void add_notes(const Problem& problem, RuptureOutlook& o) {
   if (auto note = note_on_mesh(*o.process_zone_elements, may_pass_c_S(bodies, o.of_nodes.S.median),
                                problem.friction.law.never_sticks(), o.nominal);
       !note.empty())
-    o.notes.add(Diagnostic::Kind::resolution, "{}", note);
+    o.notes.add(Diagnostic::resolution, "{}", note);
   const double length_m = stability::damping_length_m(bodies);
   const double harmless_m = harmless_damping * *o.of_nodes.process_zone_m;
   const double advised_m = advised_damping_s(problem) * stability::slower_c_L_m_per_s(bodies);
   if (length_m > harmless_m)
     o.notes.add(
-        Diagnostic::Kind::resolution,
+        Diagnostic::resolution,
         "damping: beta_R c_L = {:.3g} m is {:.3g} % of the process zone; beyond 2 % it changes speeds and "
         "whether and where fronts pass c_S; choose {}, or compare with one",
         length_m, 100 * length_m / *o.of_nodes.process_zone_m,
@@ -299,7 +299,7 @@ RuptureOutlook outlook_of(const Problem& problem, const Inside& inside, const st
   add_to_regime(problem, o);
   add_notes(problem, o);
   if (const auto n_beyond = n_beyond_strength(inside); n_beyond > 0 && 2 * n_beyond <= inside.size())
-    o.notes.add(Diagnostic::Kind::physics, "{} is beyond {} at {} of {} nodes inside: they slip at once",
+    o.notes.add(Diagnostic::physics, "{} is beyond {} at {} of {} nodes inside: they slip at once",
                 inside.t(), inside.strength(), n_beyond, inside.size());
   return o;
 }
@@ -342,7 +342,7 @@ RuptureOutlook rupture_outlook(const Problem& problem, const statics::Equilibriu
   auto o = outlook_of(problem, inside, before.tractions.x_m, false);
   add_doubts(problem, inside, o);
   if (const auto note = note_on_trigger(problem, before, tributary_m); !note.empty())
-    o.notes.add(Diagnostic::Kind::physics, "{}", note);
+    o.notes.add(Diagnostic::physics, "{}", note);
   return o;
 }
 

@@ -28,8 +28,6 @@ namespace slipfront::advice {
 
 namespace {
 
-constexpr auto physics = Diagnostic::Kind::physics;
-
 /// Limits of a sample, with a dense stiffness of its interface; and of half-spaces, with kernels.
 constexpr double most_columns_of_sample = 1500, most_unknowns_of_sample = 1e6,
                  most_columns_of_half_spaces = 2000;
@@ -298,14 +296,14 @@ void add_notes(const Problem& given, const Problem& problem, const fracture::Bod
   };
   if (!is_held(problem) && !std::ranges::all_of(problem.bodies, absorbs))
     p.notes.add(
-        physics,
+        Diagnostic::physics,
         "edges are left out, the crack is one between half-spaces: of samples with both far edges held alone "
         "they are taken in");
   if (is_held(problem) && problem.above().plate.sides == mesh::Sides::absorbing)
-    p.notes.add(physics, "absorbing sides count as free ones");
+    p.notes.add(Diagnostic::physics, "absorbing sides count as free ones");
   if (const double eps = exponent_by_pressure(bodies, residual); eps != 0)
     p.notes.add(
-        physics,
+        Diagnostic::physics,
         "slip changes the pressure: speeds leave it out, and G at rest depends on the element size, by "
         "{:.2g} % for one half as large",
         100 * (std::exp2(2 * eps) - 1));
@@ -316,21 +314,22 @@ void add_notes(const Problem& given, const Problem& problem, const fracture::Bod
     if (is_held(problem))
       note += fmt::format("; heights change by {:.2g} %, and G of a strip as much",
                           100 * change_of_heights(given, problem.element_size_m()));
-    p.notes.add(Diagnostic::Kind::resolution, "{}", note);
+    p.notes.add(Diagnostic::resolution, "{}", note);
   }
   if (problem.above().plate.sides == mesh::Sides::periodic)
-    p.notes.add(physics, "periodic sides count as ends of the contact");
+    p.notes.add(Diagnostic::physics, "periodic sides count as ends of the contact");
   if (problem.friction.law.never_sticks() && by_law)
-    p.notes.add(physics,
+    p.notes.add(Diagnostic::physics,
                 "fracture energy and residual friction are those of slip at {:g} m/s from the state before "
                 "the event on",
                 slip_rate_at_tip_m_per_s);
   if (given.is_sequence() && !has_state_before)
-    p.notes.add(physics, "of the first event of the sequence{}",
+    p.notes.add(Diagnostic::physics, "of the first event of the sequence{}",
                 given.heals() ? ", before its strength heals" : "");
   if (given.is_by_ramp())
-    p.notes.add(physics, "the state before the event is that of loading.method = direct");
-  if (problem.has_growing_tractions()) p.notes.add(physics, "tractions that grow count as at the start");
+    p.notes.add(Diagnostic::physics, "the state before the event is that of loading.method = direct");
+  if (problem.has_growing_tractions())
+    p.notes.add(Diagnostic::physics, "tractions that grow count as at the start");
 }
 
 }  // namespace
@@ -401,12 +400,12 @@ FracturePrediction FrontPredictor::predict(const TipFriction& friction, const st
   if (std::ranges::any_of(fronts, &fracture::PredictedFront::arrests))
     p.doubts_of_arrest = doubts_of_arrest(problem_, by_law, of_speeds);
   if (!p.doubts_of_arrest.empty())
-    p.notes.add(physics, "no arrest is predicted: {}", fmt::join(p.doubts_of_arrest, "; "));
+    p.notes.add(Diagnostic::physics, "no arrest is predicted: {}", fmt::join(p.doubts_of_arrest, "; "));
   else if (!of_speeds.empty())
-    p.notes.add(physics, "{}", of_speeds);
+    p.notes.add(Diagnostic::physics, "{}", of_speeds);
   if (auto doubt = doubt_of_beginning(problem_, initial_.subcritical);
       given_before == nullptr && !doubt.empty())
-    p.notes.add(physics, "{}", doubt);
+    p.notes.add(Diagnostic::physics, "{}", doubt);
   return p;
 }
 

@@ -17,10 +17,11 @@ struct Diagnostic {
     physics,     ///< what the set-up decides unasked, or what keeps it from the event that is meant
     output       ///< what the results leave out
   };
-  Kind kind = Kind::physics;
+  using enum Kind;
+  Kind kind = physics;
   std::string text;  ///< one line
 
-  bool is_refused_if_strict() const { return kind == Kind::units || kind == Kind::resolution; }
+  bool is_refused_if_strict() const { return kind == units || kind == resolution; }
 };
 
 inline const char* name(Diagnostic::Kind kind) {

@@ -134,8 +134,6 @@ std::string end_of_event(const Result& result) {
 
 namespace {
 
-using enum Diagnostic::Kind;
-
 /// Nodes in contact that slip or are open at rest.
 void add_contact(const statics::Equilibrium& state, Diagnostics& notes) {
   const auto n_slip = std::ranges::count(state.contact, statics::Contact::slip);
@@ -146,7 +144,7 @@ void add_contact(const statics::Equilibrium& state, Diagnostics& notes) {
     const bool is_inside = state.is_inside(state.tractions.x_m[k]);
     n_inside += is_inside && state.contact[k] != statics::Contact::stick ? 1 : 0;
   }
-  notes.add(physics,
+  notes.add(Diagnostic::physics,
             "before the event {} interface nodes are open and {} slip at mu_s p, {} {:.4g} to {:.4g} m",
             n_open, n_slip, n_inside == 0 ? "all outside" : fmt::format("{} of them within", n_inside),
             state.inside_from_m, state.inside_to_m);
@@ -165,7 +163,7 @@ void add_imbalance(const Result& result, Diagnostics& notes) {
   }
   if (imbalance > most * largest)
     notes.add(
-        resolution,
+        Diagnostic::resolution,
         "time.precision = single leaves {:.2g} of the largest change of energy open: the motion is small "
         "against what rounding takes from it; choose double",
         imbalance / largest);
@@ -177,38 +175,39 @@ void add_notes_of_event(Result& result, const InitialState& initial, const front
   auto& notes = result.notes;
   add_contact(initial.subcritical, notes);
   if (initial.ramp && initial.ramp->passed_margin_in_a_step())
-    notes.add(resolution,
+    notes.add(Diagnostic::resolution,
               "the ramp brings t/p from below (1 - loading.critical_margin) mu_s to slip within a step: the "
               "state in which triggered events begin is the critical one; choose a lower "
               "loading.shear_speed_m_per_s");
   const double stored = event.energies.front().strain, trigger_work = event.energies.back().trigger_work;
   if (!problem.is_prestressed() && stored > 0 && trigger_work > 0.1 * stored)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, and drives the "
               "motion behind the front",
               trigger_work, 100 * trigger_work / stored);
   add_imbalance(result, notes);
   const auto n_after = setup::snapshots_after(problem, event.time_s).size();
   if (event.end != motion::EventEnd::end_time && n_after > 0)
-    notes.add(output, "{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
-              problem.output.snapshot_times_s.size(), end_of_event(result));
+    notes.add(Diagnostic::output, "{} of {} output.snapshot_times_s are after the end of the event: {}",
+              n_after, problem.output.snapshot_times_s.size(), end_of_event(result));
   if (const double wait_s = fronts::arrest_time_s(event.record, options); wait_s > options.arrest_time_s)
     notes.add(
-        output,
+        Diagnostic::output,
         "slip spreads slowly: a tip has arrested after a wait of {:.3g} s, not of fronts.arrest_time_s = "
         "{:g} s",
         wait_s, options.arrest_time_s);
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const auto running = n_running == 1 ? std::string("1 front") : fmt::format("{} fronts", n_running);
   if (event.end == motion::EventEnd::quiet && n_running > 0)
-    notes.add(output,
+    notes.add(Diagnostic::output,
               "{} may still have been under way when the event ended ({}); time.quiet_s = inf goes on to "
               "time.end_s",
               running, end_of_event(result));
   if (event.end == motion::EventEnd::end_time && n_running > 0)
-    notes.add(output, "{} may still be under way at time.end_s = {:g} s; choose a later end to see more",
-              running, problem.time.end_s);
-  if (event.record.onsets.empty()) notes.add(physics, "no node slipped");
+    notes.add(Diagnostic::output,
+              "{} may still be under way at time.end_s = {:g} s; choose a later end to see more", running,
+              problem.time.end_s);
+  if (event.record.onsets.empty()) notes.add(Diagnostic::physics, "no node slipped");
 }
 
 }  // namespace
@@ -240,7 +239,7 @@ Diagnostics notes_of_sequence(const Problem& problem, std::span<const record::Se
   Diagnostics notes;
   const auto n_small = std::ranges::count_if(events, [](const auto& e) { return e.max_slip_m < small_m; });
   if (!problem.is_slow() && n_small > 0 && problem.loading.critical_margin < usual_margin)
-    notes.add(physics,
+    notes.add(Diagnostic::physics,
               "{} of {} events slip by nanometres, less than 0.1 um: they begin where t/p passes mu_s by "
               "loading.critical_margin = {:g}; a larger one, 0.01 to 0.03, leaves larger events alone",
               n_small, events.size(), problem.loading.critical_margin);

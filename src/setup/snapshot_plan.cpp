@@ -56,11 +56,11 @@ SnapshotPlan snapshot_plan(const Problem& problem, double step_s) {
     }
   }
   if (n_late > 0)
-    plan.notes.add(Diagnostic::Kind::output,
+    plan.notes.add(Diagnostic::output,
                    "{} of {} output.snapshot_times_s are left out: they are after time.end_s = {:g}", n_late,
                    n_listed, problem.time.end_s);
   if (n_near > 0)
-    plan.notes.add(Diagnostic::Kind::output,
+    plan.notes.add(Diagnostic::output,
                    "{} of {} output.snapshot_times_s are left out: they fall into the step of {:.4g} s of "
                    "the time before",
                    n_near, n_listed, step_s);
