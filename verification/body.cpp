@@ -22,7 +22,7 @@ void set_motion(const motion::Body& body, const mesh::Mesh& mesh, const NodeMoti
   }
 }
 
-class NoObserver final : public motion::UpdateObserver {
+class NoObserver final : public motion::StepObserver {
   void observe(double, const interface::Interface&, bool) override {}
 };
 

@@ -12,7 +12,7 @@
 #include "statics/prestress.hpp"
 
 /// When each interface node first slips.
-class FirstSlips final : public slipfront::motion::UpdateObserver {
+class FirstSlips final : public slipfront::motion::StepObserver {
  public:
   explicit FirstSlips(std::size_t n) : first_s(n, std::numeric_limits<double>::infinity()) {}
   void observe(double time_s, const slipfront::interface::Interface& state, bool changed) override {

@@ -402,13 +402,19 @@ def wave_speeds(**material: Any) -> _core.WaveSpeeds:
     return make_case({"material": {**DEFAULT_MATERIAL, **material}}, None, {}).wave_speeds
 
 
+def plate_of(element_size_m: float) -> dict[str, float]:
+    """Table of a plate of squares, whose size the defaults of a case follow."""
+    return {"width_m": 100 * element_size_m, "height_m": 50 * element_size_m, "element_size_m": element_size_m}
+
+
 def stable_step_s(element_size_m: float, **material: Any) -> float:
     """Largest stable time step of the explicit scheme in square elements, s; with the material's damping, by
-    default that of the default case.
+    default that of a case with such elements.
 
     The step of a plate may be smaller by what its corners ask for: `info` tells it."""
     size_m = number(element_size_m, "element_size_m", above=0, finite=True)
-    return make_case({"material": {**DEFAULT_MATERIAL, **material}}, None, {}).stable_step_s(size_m)
+    tables = {"plate": plate_of(size_m), "material": material}
+    return make_case(tables, None, {}).stable_step_s(size_m)
 
 
 def well_posedness(
@@ -422,7 +428,8 @@ def well_posedness(
 ) -> _core.WellPosedness:
     """Whether slow uniform sliding under a friction law has a growth that a finer mesh would not change.
 
-    friction, material, base: tables of a case file, base={"kind": "body", ...} for a second half-space.
+    friction, material, base: tables of a case file, base={"kind": "body", ...} for a second half-space; damping
+    is by default that of a case with such elements.
     pressure_Pa: uniform, positive in compression. longest_wavelength_m: such as the length of the interface.
     Theory: docs/stability.md."""
     p_Pa = number(pressure_Pa, "pressure_Pa", above=0, finite=True)
@@ -430,4 +437,5 @@ def well_posedness(
     wavelength_m = number(longest_wavelength_m, "longest_wavelength_m", above=0, finite=True)
     given = {"friction": friction, "material": material, "base": base}
     tables = {name: table(value, name) for name, value in given.items() if value is not None}
+    tables["plate"] = plate_of(size_m)
     return make_case(tables, None, {}).well_posedness(p_Pa, size_m, wavelength_m)

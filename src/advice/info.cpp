@@ -204,11 +204,11 @@ double measured_rate_per_s(const Problem& problem, const Timed& timed, motion::T
   const auto state = statics::prestressed(plate, tractions, timed.base);
   stepper.start(state, 0, motion::prescribed_loads(state));
   motion::Recorder recorder(state, mu_s, 0);
-  stepper.advance(recorder, 1, {});  // makes its pages and fills the caches
+  stepper.advance(recorder, 1);  // makes its pages and fills the caches
   const auto start = Clock::now();
   double times = 0, spent_s = 0;
   do {
-    stepper.advance(recorder, n_steps, {});
+    stepper.advance(recorder, n_steps);
     ++times;
     spent_s = seconds_since(start);
   } while (spent_s < min_s || (times < 3 && spent_s < max_s));

@@ -178,7 +178,7 @@ Rate measure_path(const std::string& path, int columns, const motion::TimeSteppi
       std::max(min_steps, static_cast<std::int64_t>(updates_per_call / stepper.node_updates_per_step()));
   const double updates = static_cast<double>(steps) * stepper.node_updates_per_step();
   Rate result{path, columns, columns / 2, execution.threads, stepper.steps_per_sweep()};
-  result.node_updates_per_s = rate(updates, [&] { stepper.advance(plate.recorder(), steps, {}); });
+  result.node_updates_per_s = rate(updates, [&] { stepper.advance(plate.recorder(), steps); });
   constexpr double enough_nodes = 1e6;
   if (nodes > enough_nodes) result.bytes_per_node = (resident_bytes() - before) / nodes;
   return result;

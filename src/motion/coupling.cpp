@@ -166,7 +166,7 @@ void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa)
   loads_.prestress_p_Pa = std::move(p_Pa);
 }
 
-void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, record::History* sample,
+void Coupling::update(double time_s, double dt_s, StepObserver& observer, record::History* sample,
                       record::Energies& works) {
   const double impulse_s = dt_s * trigger_factor(loads_.trigger, time_s);
   prestress_growth_t_Pa_ = time_s * loads_.prestress_rate.t_Pa_per_s;

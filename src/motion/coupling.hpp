@@ -10,8 +10,8 @@
 #include "interface/trigger.hpp"
 #include "mesh/node_columns.hpp"
 #include "motion/interface_side.hpp"
-#include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
+#include "motion/step_observer.hpp"
 #include "motion/time_stepper.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
@@ -79,7 +79,7 @@ class Coupling {
 
   /// The sub-step of length dt_s that begins at time_s: finds the tractions and moves the interface nodes.
   /// @param sample  where to put the state of own nodes at time_s, or null
-  void update(double time_s, double dt_s, UpdateObserver& observer, record::History* sample,
+  void update(double time_s, double dt_s, StepObserver& observer, record::History* sample,
               record::Energies& works);
 
   /// Turns the relative motion round.

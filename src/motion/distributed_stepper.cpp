@@ -58,25 +58,49 @@ std::vector<solid::Span> rows_at_once(const mesh::NodeColumns& body) {
   return groups;
 }
 
-/// Logs the contact updates of several steps for the report.
-class Log final : public UpdateObserver {
+/// Logs several steps for the report.
+class Log final : public StepObserver {
  public:
-  /// @param places  of the subdomain's nodes along the whole interface
-  Log(SlipFinder& finder, const mesh::Subset& places, TractionLog& tractions, SlipUpdates& to)
-      : finder_(finder), places_(places), tractions_(tractions), to_(to) {}
+  /// @param places      of the subdomain's nodes along the whole interface
+  /// @param is_sampled  of each step
+  /// @param n_values    of the probes in a step
+  Log(SlipFinder& finder, const mesh::Subset& places, TractionLog& tractions,
+      const std::vector<std::uint8_t>& is_sampled, std::int64_t first_step, std::size_t n_values,
+      StepReport& to)
+      : finder_(finder),
+        places_(places),
+        tractions_(tractions),
+        is_sampled_(is_sampled),
+        first_step_(first_step),
+        n_values_(n_values),
+        to_(to) {}
   void observe(double time_s, const interface::Interface& state, bool changed) override {
     finder_.find(time_s, state, changed, seen_);
     tractions_.add(state.t_Pa, state.p_Pa);
     for (auto& change : seen_.changes) change.node = places_.number_at(change.node);
-    to_.add(seen_);
+    to_.seen.add(seen_);
   }
+  record::History* row() override { return is_sampled_[n_asked_++] != 0 ? &samples_ : nullptr; }
+  double* displacements(std::int64_t step) override {
+    return to_.displacements.data() + n_values_ * static_cast<std::size_t>(step - first_step_ - 1);
+  }
+  bool after_step(const SlipRates& rates) override {
+    to_.rates.push_back(rates);
+    return true;
+  }
+  record::History& samples() { return samples_; }
 
  private:
   SlipFinder& finder_;
   const mesh::Subset& places_;
   TractionLog& tractions_;
-  SlipUpdates& to_;
+  const std::vector<std::uint8_t>& is_sampled_;
+  std::int64_t first_step_;
+  std::size_t n_values_;
+  StepReport& to_;
   SlipUpdate seen_;
+  record::History samples_;
+  std::size_t n_asked_ = 0;
 };
 
 }  // namespace
@@ -232,8 +256,7 @@ void DistributedStepper::put_probes_in_order(std::span<const double> report, dou
     std::ranges::copy(report.subspan(n_values * k, n_values), to + n_values * probe_order_[k]);
 }
 
-std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t max_steps,
-                                         const StepCallbacks& callbacks) {
+std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t max_steps) {
   // Each rank logs tractions near its ends, and all hold what they are shown of the whole interface.
   constexpr double max_bytes = 16e6;
   int widest = 0;
@@ -247,28 +270,28 @@ std::int64_t DistributedStepper::advance(SlipObserver& observer, std::int64_t ma
   const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(max_bytes / bytes));
   std::int64_t taken = 0;
   for (is_interrupted_ = false; taken < max_steps && !is_interrupted_;) {
-    const auto n = std::min({max_steps - taken, callbacks.guaranteed_steps(), at_once});
-    const auto steps = advance_guaranteed(observer, n, callbacks);
+    const auto n = std::min({max_steps - taken, observer.guaranteed_steps(), at_once});
+    const auto steps = advance_guaranteed(observer, n);
     taken += steps.shown;
     if (!steps.goes_on) break;
   }
   return taken;
 }
 
-DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& observer, std::int64_t n_steps,
-                                                                 const StepCallbacks& callbacks) {
+DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& observer,
+                                                                 std::int64_t n_steps) {
   const auto first_step = step_;
   std::vector<record::History*> samples;
   std::vector<std::uint8_t> is_sampled;
   for (std::int64_t k = 0; k < n_steps; ++k, ++step_) {
-    samples.push_back(callbacks.sample());
+    samples.push_back(observer.row());
     is_sampled.push_back(samples.back() != nullptr);
   }
   step_ = first_step;
   auto& finder = observer.finder();
   if (!finder_) make_finder(finder);
   auto own = advance_own(is_sampled);
-  own.is_interrupted = callbacks.interrupted();
+  own.is_interrupted = observer.is_interrupted();
   auto report = StepReport::joined(processes_.all_gather(packed(own)));
   is_interrupted_ = report.is_interrupted;
   SLIPFRONT_ASSERT(report.memory.t_Pa.size() == finder.memory().t_Pa.size(), "the subdomains have all nodes");
@@ -292,14 +315,14 @@ DistributedStepper::Steps DistributedStepper::advance_guaranteed(SlipObserver& o
       ++row;
     }
     if (n_displacements > 0)
-      if (double* to = callbacks.displacements(step_ + 1); to != nullptr)
+      if (double* to = observer.displacements(step_ + 1); to != nullptr)
         put_probes_in_order(std::span(report.displacements)
                                 .subspan(static_cast<std::size_t>(k) * n_displacements, n_displacements),
                             to);
     ++step_;
     // Before the last of these steps only a motion that is not physical is refused. The subdomains have gone
     // on: the energy reported is that of the last step.
-    if (!callbacks.may_continue(report.rates[static_cast<std::size_t>(k)])) return {k + 1, false};
+    if (!observer.after_step(report.rates[static_cast<std::size_t>(k)])) return {k + 1, false};
   }
   return {n_steps, true};
 }
@@ -321,28 +344,13 @@ void DistributedStepper::make_finder(const SlipFinder& whole) {
 
 StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_sampled) {
   const auto n_steps = std::ssize(is_sampled);
-  const auto first_step = stepper_->step();
   const std::size_t n_values = displacement_values(stepper_->probes());
   StepReport report;
   report.displacements.resize(n_values * static_cast<std::size_t>(n_steps));
   log_.clear();
   log_.add(finder_->memory().t_Pa, finder_->memory().p_Pa);
-  Log log(*finder_, own_places(), log_, report.seen);
-  record::History samples;
-  std::int64_t next_sample = 0;
-  StepCallbacks callbacks;
-  callbacks.sample = [&]() -> record::History* {
-    return is_sampled[static_cast<std::size_t>(next_sample++)] != 0 ? &samples : nullptr;
-  };
-  callbacks.may_continue = [&](const SlipRates& of_step) {
-    report.rates.push_back(of_step);
-    return true;
-  };
-  if (n_values > 0)
-    callbacks.displacements = [&](std::int64_t step) {
-      return report.displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
-    };
-  halo_->advance(log, n_steps, callbacks);
+  Log log(*finder_, own_places(), log_, is_sampled, stepper_->step(), n_values, report);
+  halo_->advance(log, n_steps);
   const auto& memory = finder_->memory();
   // Only own nodes of the interface count; the samples have no others.
   const auto own = stepper_->bodies().front().interface_side().own;
@@ -355,6 +363,7 @@ StepReport DistributedStepper::advance_own(const std::vector<std::uint8_t>& is_s
                    own_of(memory.strength_Pa),
                    own_of(memory.onset_ratio),
                    own_of(memory.slipping)};
+  auto& samples = log.samples();
   for (auto* values : members_of(samples))
     if (values != &samples.time_s) report.samples.push_back(std::move(*values));
   return report;

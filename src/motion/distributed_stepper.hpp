@@ -117,8 +117,7 @@ class DistributedStepper final : public TimeStepper {
   const std::vector<Probe>& probes() const override { return probes_; }
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
-  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
-                       const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps) override;
   bool is_interrupted() const override { return is_interrupted_; }
   record::Energies energies() override;
   record::Breakdown breakdown() const override;
@@ -146,8 +145,8 @@ class DistributedStepper final : public TimeStepper {
     std::int64_t shown = 0;
     bool goes_on = false;
   };
-  /// Takes some steps whatever may_continue says, and shows them to the observer until it refuses more.
-  Steps advance_guaranteed(SlipObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks);
+  /// Takes some steps whatever after_step says, and shows them to the observer until it refuses more.
+  Steps advance_guaranteed(SlipObserver& observer, std::int64_t n_steps);
   /// The steps in the own subdomain.
   StepReport advance_own(const std::vector<std::uint8_t>& is_sampled);
   /// Makes the finder of own nodes, with what one of the whole interface knows.

@@ -135,21 +135,20 @@ void Halo::renew() {
   put_in_rest();
 }
 
-void Halo::advance(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks) {
+void Halo::advance(StepObserver& observer, std::int64_t n_steps) {
   const auto begin = Clock::now();
   const double waited_before_s = processes_.counters().exchange_s;
   while (n_steps > 0) {
     const auto n = std::min(steps_per_exchange_ - steps_since_exchange_, n_steps);
     const bool exchanges = steps_since_exchange_ + n == steps_per_exchange_;
-    take_steps(observer, n, callbacks, exchanges);
+    take_steps(observer, n, exchanges);
     steps_since_exchange_ = exchanges ? 0 : steps_since_exchange_ + n;
     n_steps -= n;
   }
   computing_s_ += seconds_since(begin) - (processes_.counters().exchange_s - waited_before_s);
 }
 
-void Halo::take_steps(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks,
-                      bool exchanges) {
+void Halo::take_steps(StepObserver& observer, std::int64_t n_steps, bool exchanges) {
 #ifdef NDEBUG
   constexpr bool are_checked = false;
 #else
@@ -160,7 +159,7 @@ void Halo::take_steps(UpdateObserver& observer, std::int64_t n_steps, const Step
     done += at_once;
     const bool is_sent = exchanges && done == n_steps;
     if (is_sent) begin_sends();
-    stepper_.advance(observer, at_once, callbacks, band_callbacks(is_sent));
+    stepper_.advance(observer, at_once, band_callbacks(is_sent));
     if (is_sent) end_sends();
     if (are_checked) check(steps_since_exchange_ + done, is_sent);
   }

@@ -35,7 +35,7 @@ class Halo {
   /// Begins anew without an exchange, where the halo is right.
   void begin_anew();
   /// Takes steps, all of them, and exchanges the halo where it is due.
-  void advance(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks);
+  void advance(StepObserver& observer, std::int64_t n_steps);
   void finish();
 
   /// Time of the steps since the last begin_anew or renew, without that of waiting.
@@ -63,8 +63,7 @@ class Halo {
   void make_stages(int columns, double stage_bytes);
   void add_neighbour(int rank, bool is_below, solid::Span out, solid::Span in);
   /// Steps between two exchanges, or fewer.
-  void take_steps(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks,
-                  bool exchanges);
+  void take_steps(StepObserver& observer, std::int64_t n_steps, bool exchanges);
   /// What is done beside steps. @param exchanges  whether the halo is sent with the last one of them
   BandCallbacks band_callbacks(bool exchanges);
   void begin_sends();

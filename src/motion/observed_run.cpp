@@ -5,12 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "base/interruption.hpp"
-
 namespace slipfront::motion {
 
 End ObservedRun::run() {
-  const auto step_callbacks = callbacks();
   for (;;) {
     Pause pause(*stepper_);
     for (const auto& observer : observers_) observer->at_pause(pause);
@@ -21,7 +18,7 @@ End ObservedRun::run() {
     auto n = many_steps;
     for (const auto& observer : observers_) n = std::min(n, observer->steps_to_pause(pause.now()));
     for (const auto& observer : observers_) observer->expect(pause.now(), n);
-    stepper_->advance(*this, n, step_callbacks);
+    stepper_->advance(*this, n);
   }
 }
 
@@ -31,26 +28,22 @@ std::optional<End> ObservedRun::end(Pause& pause) {
   return {};
 }
 
-StepCallbacks ObservedRun::callbacks() {
-  StepCallbacks callbacks;
-  callbacks.sample = [this]() -> record::History* {
-    const Now now = stepper_->now();
-    const auto wants = [&](const auto& observer) { return observer->wants_row(now); };
-    return std::ranges::any_of(observers_, wants) ? &row_ : nullptr;
-  };
-  callbacks.displacements = [this](std::int64_t step) -> double* {
-    for (const auto& observer : observers_)
-      if (double* to = observer->displacements(step); to != nullptr) return to;
-    return nullptr;
-  };
-  callbacks.may_continue = [this](const SlipRates& rates) { return after_step(rates); };
-  callbacks.interrupted = is_pause_wanted;
-  callbacks.guaranteed_steps = [this] {
-    auto n = many_steps;
-    for (const auto& observer : observers_) n = std::min(n, observer->guaranteed_steps(stepper_->now()));
-    return n;
-  };
-  return callbacks;
+record::History* ObservedRun::row() {
+  const Now now = stepper_->now();
+  const auto wants = [&](const auto& observer) { return observer->wants_row(now); };
+  return std::ranges::any_of(observers_, wants) ? &row_ : nullptr;
+}
+
+double* ObservedRun::displacements(std::int64_t step) {
+  for (const auto& observer : observers_)
+    if (double* to = observer->displacements(step); to != nullptr) return to;
+  return nullptr;
+}
+
+std::int64_t ObservedRun::guaranteed_steps() {
+  auto n = many_steps;
+  for (const auto& observer : observers_) n = std::min(n, observer->guaranteed_steps(stepper_->now()));
+  return n;
 }
 
 bool ObservedRun::after_step(const SlipRates& rates) {

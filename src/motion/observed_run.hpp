@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/interruption.hpp"
 #include "motion/observer.hpp"
 
 namespace slipfront::motion {
@@ -25,6 +26,11 @@ class ObservedRun final : public SlipObserver {
   void at_update(const SlipUpdate& seen) override {
     for (const auto& observer : observers_) observer->at_update(seen);
   }
+  record::History* row() override;
+  double* displacements(std::int64_t step) override;
+  bool after_step(const SlipRates& rates) override;
+  bool is_interrupted() override { return is_pause_wanted(); }
+  std::int64_t guaranteed_steps() override;
 
   /// The observer of a kind that there is one of.
   template <class T>
@@ -43,8 +49,6 @@ class ObservedRun final : public SlipObserver {
 
  private:
   std::optional<End> end(Pause& pause);
-  StepCallbacks callbacks();
-  bool after_step(const SlipRates& rates);
 
   TimeStepper* stepper_;
   Observers observers_;

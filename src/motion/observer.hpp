@@ -9,7 +9,7 @@
 
 #include "base/state.hpp"
 #include "motion/every.hpp"
-#include "motion/slip_finder.hpp"
+#include "motion/step_observer.hpp"
 #include "motion/time_stepper.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"

@@ -205,19 +205,18 @@ StateView PlainStepper::state() {
   return state;
 }
 
-std::int64_t PlainStepper::advance(SlipObserver& observer, std::int64_t max_steps,
-                                   const StepCallbacks& callbacks) {
+std::int64_t PlainStepper::advance(SlipObserver& observer, std::int64_t max_steps) {
   for (std::int64_t taken = 0; taken < max_steps;) {
-    record::History* sample = callbacks.sample();
+    record::History* sample = observer.row();
     take_step(std::span(bodies_), plan_.period, [&](int k) {
       coupling_.update(time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
                        bodies_.front().works);
     });
-    if (double* to = probes_.empty() ? nullptr : callbacks.displacements(step_ + 1); to != nullptr)
+    if (double* to = probes_.empty() ? nullptr : observer.displacements(step_ + 1); to != nullptr)
       std::ranges::copy(probed_u_m(), to);
     ++step_;
     ++taken;
-    if (!callbacks.may_continue(coupling_.slip_rates()) || callbacks.interrupted()) return taken;
+    if (!observer.after_step(coupling_.slip_rates()) || observer.is_interrupted()) return taken;
   }
   return max_steps;
 }

@@ -41,8 +41,7 @@ class PlainStepper : public TimeStepper {
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
 
-  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
-                       const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps) override;
 
   std::span<const PlainBody> bodies() const { return bodies_; }
   const interface::Interface& interface_state() const { return coupling_.state(); }

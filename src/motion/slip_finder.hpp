@@ -14,19 +14,6 @@
 
 namespace slipfront::motion {
 
-/// Sees every contact update of an interface.
-class UpdateObserver {
- public:
-  UpdateObserver() = default;
-  UpdateObserver(const UpdateObserver&) = default;
-  UpdateObserver(UpdateObserver&&) = default;
-  UpdateObserver& operator=(const UpdateObserver&) = default;
-  UpdateObserver& operator=(UpdateObserver&&) = default;
-  virtual ~UpdateObserver() = default;
-  /// After a contact update whose tractions belong to time_s. `changed` is update_contact's answer.
-  virtual void observe(double time_s, const interface::Interface& state, bool changed) = 0;
-};
-
 /// A node begins or ceases to slip.
 struct SlipChange {
   std::int32_t node = 0;
@@ -90,26 +77,6 @@ class SlipFinder {
   int halo_;
   double creep_m_per_s_;
   std::size_t n_slipping_ = 0;  ///< of the nodes that it looks at
-};
-
-/// Is shown the changes of slip in every contact update.
-class SlipObserver : public UpdateObserver {
- public:
-  explicit SlipObserver(SlipFinder finder) : finder_(std::move(finder)) {}
-  void observe(double time_s, const interface::Interface& state, bool changed) final {
-    finder_.find(time_s, state, changed, seen_);
-    at_update(seen_);
-  }
-  /// Updates come in the order of time.
-  virtual void at_update(const SlipUpdate& seen) = 0;
-
-  SlipFinder& finder() { return finder_; }
-  /// What the last update has shown, where it was found here.
-  const SlipUpdate& seen() const { return seen_; }
-
- private:
-  SlipFinder finder_;
-  SlipUpdate seen_;
 };
 
 }  // namespace slipfront::motion

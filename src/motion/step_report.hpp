@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "motion/slip_finder.hpp"
-#include "motion/time_stepper.hpp"
+#include "motion/step_observer.hpp"
 #include "processes/processes.hpp"
 #include "record/record.hpp"
 

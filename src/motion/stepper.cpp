@@ -96,7 +96,7 @@ void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_
   step_ = 0;
 }
 
-void Stepper::advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
+void Stepper::advance_interface(std::int64_t step, int n_substeps, StepObserver& observer,
                                 record::History* sample) {
   auto& of_bodies = in_flight(step);
   for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].begin(of_bodies[b]);
@@ -141,9 +141,9 @@ void Stepper::set_probes(std::vector<Probe> probes) {
     }
 }
 
-void Stepper::store_probed(std::int64_t step, std::size_t band, const StepCallbacks& callbacks) const {
+void Stepper::store_probed(std::int64_t step, std::size_t band, StepObserver& observer) const {
   if (probed_nodes_[band].empty()) return;
-  double* to = callbacks.displacements(step);
+  double* to = observer.displacements(step);
   if (to == nullptr) return;
   for (const auto& [body, node, at] : probed_nodes_[band]) {
     const auto u_m = bodies_[body].u_in_flight_m(node);
@@ -160,26 +160,25 @@ std::vector<double> Stepper::probed_v_m_per_s() const {
   return values_at(probes_, [&](std::size_t b) -> const solid::Field& { return bodies_[b].v_m_per_s(); });
 }
 
-std::int64_t Stepper::advance(SlipObserver& observer, std::int64_t max_steps,
-                              const StepCallbacks& callbacks) {
-  return advance(static_cast<UpdateObserver&>(observer), max_steps, callbacks);
+std::int64_t Stepper::advance(SlipObserver& observer, std::int64_t max_steps) {
+  return advance(static_cast<StepObserver&>(observer), max_steps);
 }
 
-std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t max_steps,
-                              const StepCallbacks& callbacks, const BandCallbacks& band_callbacks) {
+std::int64_t Stepper::advance(StepObserver& observer, std::int64_t max_steps,
+                              const BandCallbacks& band_callbacks) {
   const auto first = step_, last = first + max_steps - 1;
   const auto is_in_calling_thread = [&](std::int64_t number) {
     return (number - first) / wavefront_->steps_per_sweep() % wavefront_->threads() == 0;
   };
   const auto unit = [&](std::int64_t number, int band) {
     if (band_callbacks.before && is_in_calling_thread(number)) band_callbacks.before(number - first, band);
-    if (band == 0) advance_interface(number, plan_.period, observer, callbacks.sample());
+    if (band == 0) advance_interface(number, plan_.period, observer, observer.row());
     advance_band(number, static_cast<std::size_t>(band));
-    if (!probed_nodes_.empty()) store_probed(number + 1, static_cast<std::size_t>(band), callbacks);
+    if (!probed_nodes_.empty()) store_probed(number + 1, static_cast<std::size_t>(band), observer);
     if (number == last && band_callbacks.after_last) band_callbacks.after_last(band);
     if (band > 0) return true;
     ++step_;
-    return callbacks.may_continue(coupling_.slip_rates()) && !callbacks.interrupted();
+    return observer.after_step(coupling_.slip_rates()) && !observer.is_interrupted();
   };
   const auto taken = wavefront_->run(step_, max_steps, n_bands_, unit);
   SLIPFRONT_ASSERT(!band_callbacks.after_last || taken == max_steps, "all steps are taken");
@@ -187,11 +186,7 @@ std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t max_steps,
   return taken;
 }
 
-void Stepper::advance(UpdateObserver& observer, record::History* sample) {
-  advance(observer, 1, {.sample = [sample] { return sample; }});
-}
-
-void Stepper::reverse(UpdateObserver& observer) {
+void Stepper::reverse(StepObserver& observer) {
   // All cells kick at the beginning of a step: the motion back begins with the velocities after these
   // impulses, at the places before them. It keeps the steady forces on shared nodes, without which it would
   // be another.

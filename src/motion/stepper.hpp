@@ -13,7 +13,7 @@
 #include "motion/coupling.hpp"
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
-#include "motion/slip_finder.hpp"
+#include "motion/step_observer.hpp"
 #include "motion/step_plan.hpp"
 #include "motion/time_stepper.hpp"
 #include "processes/processes.hpp"
@@ -98,18 +98,15 @@ class Stepper : public TimeStepper {
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
 
-  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
-                       const StepCallbacks& callbacks) override;
+  std::int64_t advance(SlipObserver& observer, std::int64_t max_steps) override;
   /// The same, seen by any observer.
-  std::int64_t advance(UpdateObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks,
+  std::int64_t advance(StepObserver& observer, std::int64_t max_steps = 1,
                        const BandCallbacks& band_callbacks = {});
-  /// One step; the state at its beginning is appended to `sample` where it is given.
-  void advance(UpdateObserver& observer, record::History* sample = nullptr);
 
   /// Turns the motion round: the steps to come go back through the displacements of those before, exactly but
   /// for rounding where the forces do not depend on time and nothing dissipates. Time goes on. The contact is
   /// updated once, which the observer sees; the works start anew and lack the first step's coupling.
-  void reverse(UpdateObserver& observer);
+  void reverse(StepObserver& observer);
 
   std::int64_t step() const override { return step_; }
   const solid::Field& u_m() const { return bodies_.front().u_m(); }
@@ -193,10 +190,9 @@ class Stepper : public TimeStepper {
   }
   /// The part of a step that concerns the interface: take_step, or the first n_substeps of it. Of the
   /// coarsest levels the later bands are left to advance_band.
-  void advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
-                         record::History* sample);
+  void advance_interface(std::int64_t step, int n_substeps, StepObserver& observer, record::History* sample);
   /// Copies the displacements of the watched nodes that the bands `band` have moved to where a step ends.
-  void store_probed(std::int64_t step, std::size_t band, const StepCallbacks& callbacks) const;
+  void store_probed(std::int64_t step, std::size_t band, StepObserver& observer) const;
   /// One band of the coarsest levels with the common step.
   void advance_band(std::int64_t step, std::size_t band);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -9,8 +8,8 @@
 #include "base/interruption.hpp"
 #include "motion/every.hpp"
 #include "motion/probes.hpp"
-#include "motion/slip_finder.hpp"
 #include "motion/state_by_node.hpp"
+#include "motion/step_observer.hpp"
 #include "record/breakdown.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
@@ -19,42 +18,6 @@
 namespace slipfront::motion {
 
 struct Loads;
-
-/// How fast the nodes of an interface slip.
-struct SlipRates {
-  bool finite = true;
-  double fastest_m_per_s = 0;
-  double fastest_in_contact_m_per_s = 0;
-  double fastest_slipping_m_per_s = 0;  ///< of nodes in contact that count as slipping
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(finite, fastest_m_per_s, fastest_in_contact_m_per_s, fastest_slipping_m_per_s);
-  }
-  /// Those of other nodes.
-  void add(const SlipRates& more) {
-    finite &= more.finite;
-    fastest_m_per_s = std::max(fastest_m_per_s, more.fastest_m_per_s);
-    fastest_in_contact_m_per_s = std::max(fastest_in_contact_m_per_s, more.fastest_in_contact_m_per_s);
-    fastest_slipping_m_per_s = std::max(fastest_slipping_m_per_s, more.fastest_slipping_m_per_s);
-  }
-};
-
-/// Callbacks during a run. They are called in the order of steps, not always by the same thread, and may read
-/// only the stepper's time and step.
-struct StepCallbacks {
-  /// Where to put the state at the beginning of the step that follows; null for nowhere.
-  std::function<record::History*()> sample = [] { return nullptr; };
-  /// After the interface's part of a step: whether another one may follow.
-  std::function<bool(const SlipRates& rates)> may_continue = [](const SlipRates&) { return true; };
-  /// After a step: whether no more are wanted. Steps that are guaranteed may follow.
-  std::function<bool()> interrupted = [] { return false; };
-  /// Where to put the displacements of the nodes of the stepper's probes at a step, see displacement_values;
-  /// null for nowhere. Asked for in each part of the step, from the thread that takes it.
-  std::function<double*(std::int64_t step)> displacements = [](std::int64_t) { return nullptr; };
-  /// Steps, at least one, after which may_continue may first refuse a motion that is physical.
-  std::function<std::int64_t()> guaranteed_steps = [] { return std::int64_t{1}; };
-};
 
 /// Motion of all nodes at one instant, those of a body below after those of the plate, with u_y and v_y up.
 /// The velocity belongs to half a step (half a sub-step in the interface layer) earlier.
@@ -98,12 +61,10 @@ class TimeStepper {
   virtual std::vector<double> probed_u_m() const = 0;
   virtual std::vector<double> probed_v_m_per_s() const = 0;
 
-  /// Takes at most `max_steps` steps, several of them in one sweep through memory. Every contact update is
-  /// shown to the observer.
+  /// Takes at most `max_steps` steps, several of them in one sweep through memory.
   /// @return the number of steps taken
-  /// @throws what observer and callbacks throw; after that only start may follow.
-  virtual std::int64_t advance(SlipObserver& observer, std::int64_t max_steps,
-                               const StepCallbacks& callbacks) = 0;
+  /// @throws what the observer throws; after that only start may follow.
+  virtual std::int64_t advance(SlipObserver& observer, std::int64_t max_steps) = 0;
   /// Whether the run is to be interrupted or kept in a checkpoint; on all ranks the same.
   virtual bool is_interrupted() const { return is_pause_wanted(); }
 

@@ -130,7 +130,7 @@ TEST_F(Monitored, LooksAtTheEnergyEveryHundredSteps) {
       statics::prestressed(mesh_, {stepper.interface_state().u_y_m, stepper.interface_state().t_Pa,
                                    stepper.interface_state().p_Pa}),
       0.5, 0);
-  stepper.advance(recorder, 70, {});
+  stepper.advance(recorder, 70);
   EXPECT_THAT(failure(monitor, stepper, {}), IsEmpty());
   EXPECT_EQ(monitor.steps_to_pause({70, 1e-7}), 30);
   EXPECT_THAT(failure(monitor, stepper, stepper.energies()), IsEmpty());  // known for another purpose

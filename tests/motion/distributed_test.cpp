@@ -41,7 +41,7 @@ struct Outcome {
 /// A run that may change its stepper on the way.
 struct Journey {
   explicit Journey(const Begin& begin) : recorder(begin.state, 1.3, begin.halo, 1e-6) {}
-  Recorder recorder;
+  support::RowRecorder recorder;
   Outcome outcome;
 };
 
@@ -49,16 +49,15 @@ void take_steps(Journey& journey, TimeStepper& stepper, std::int64_t n_steps) {
   auto& [recorder, outcome] = journey;
   auto before_m = stepper.probed_u_m();
   ProbeRecorder probes(stepper.probes(), stepper.step_s(), 3 * stepper.step_s(), before_m, before_m);
-  StepCallbacks callbacks;
-  callbacks.sample = [&]() -> record::History* {
+  recorder.to_row = [&]() -> record::History* {
     return stepper.step() % 7 == 0 ? &journey.outcome.history : nullptr;
   };
-  callbacks.displacements = [&](std::int64_t step) { return probes.room_for(step); };
-  callbacks.guaranteed_steps = [] { return std::int64_t{1000}; };
+  recorder.probes = &probes;
+  recorder.n_guaranteed = 1000;
   for (std::int64_t done = 0; done < n_steps;) {
     const auto n = std::min<std::int64_t>(23, n_steps - done);
     probes.expect(stepper.step(), n);
-    done += stepper.advance(recorder, n, callbacks);
+    done += stepper.advance(recorder, n);
     probes.take_rows(stepper.step(), outcome.probes);
   }
   outcome.snapshot = stepper.snapshot();
@@ -283,7 +282,7 @@ TEST(Subdomains, AreWrongNoFartherThanTheColumnsOfAStep) {
       if constexpr (std::is_floating_point_v<T>) std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
     });
     Journey journey(begin);
-    stepper.advance(journey.recorder, 1, {});
+    stepper.advance(journey.recorder, 1);
     int end = 0;
     std::vector<BodySteps> steps;
     for (const auto& body : stepper.bodies()) {

@@ -119,7 +119,7 @@ TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
     UnderWay way({mesh, {}, support::gentle_law, time_, execution}, e, 0.2,
                  support::left_trigger(e, mesh, mu_s));
     auto& stepper = way.stepper;
-    EXPECT_EQ(stepper.advance(way.recorder, 60, {}), 60);
+    EXPECT_EQ(stepper.advance(way.recorder, 60), 60);
     return std::tuple(stepper.u_m().x, stepper.u_m().y, stepper.energies().stored(),
                       stepper.energies().work());
   };
@@ -141,7 +141,7 @@ TEST(Graded, SinglePrecisionOfTheCoarsestBlockDiffersByRounding) {
     auto time = stepping(4, true);
     time.precision = k == 0 ? Precision::double_precision : Precision::single_precision;
     UnderWay way({mesh, {}, support::paper_law, time}, e, 1);
-    EXPECT_EQ(way.stepper.advance(way.recorder, n_steps, {}), n_steps);
+    EXPECT_EQ(way.stepper.advance(way.recorder, n_steps), n_steps);
     v[k] = way.stepper.v_m_per_s();
   }
   // Rounding of u (20 um, turned into velocities by 1/dt) and v (1 m/s), 6e-8 of each in every step.

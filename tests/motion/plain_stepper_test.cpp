@@ -39,16 +39,15 @@ template <class S>
 Trace run(S& stepper, const Problem& problem, const Bodies& bodies, const Begin& begin, int n_steps) {
   stepper.set_probes(locate_probes(problem.probes, bodies.sources()));
   stepper.start(begin.state, 0.3, begin.loads);
-  Recorder recorder(begin.state, mu_s, begin.halo);
+  support::RowRecorder recorder(begin.state, mu_s, begin.halo);
   Trace trace;
   trace.start = stepper.energies();
   ProbeRecorder probes(stepper.probes(), stepper.step_s(), stepper.step_s(), stepper.probed_u_m(),
                        stepper.probed_u_m());
   probes.expect(0, n_steps);
-  StepCallbacks callbacks;
-  callbacks.sample = [&] { return &trace.history; };
-  callbacks.displacements = [&](std::int64_t step) { return probes.room_for(step); };
-  EXPECT_EQ(stepper.advance(recorder, n_steps, callbacks), n_steps);
+  recorder.to_row = [&] { return &trace.history; };
+  recorder.probes = &probes;
+  EXPECT_EQ(stepper.advance(recorder, n_steps), n_steps);
   probes.take_rows(n_steps, trace.probes);
   trace.snapshot = stepper.snapshot();
   trace.record = recorder.record_until(stepper.time_s());

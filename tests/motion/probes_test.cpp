@@ -154,19 +154,18 @@ TEST(Probes, OutsideAreRefused) {
 }
 
 /// Takes n steps, at most `at_once` in one call.
-record::ProbeRecord take_steps(Stepper& stepper, Recorder& recorder, std::int64_t n, std::int64_t at_once,
-                               double interval_s) {
+record::ProbeRecord take_steps(Stepper& stepper, support::RowRecorder& recorder, std::int64_t n,
+                               std::int64_t at_once, double interval_s) {
   auto before_m = stepper.probed_u_m();
   const auto v = stepper.probed_v_m_per_s();
   for (std::size_t k = 0; k < v.size(); ++k) before_m[k] -= stepper.step_s() * v[k];
   ProbeRecorder probes(stepper.probes(), stepper.step_s(), interval_s, before_m, stepper.probed_u_m());
   record::ProbeRecord rows;
-  StepCallbacks callbacks;
-  callbacks.displacements = [&](std::int64_t step) { return probes.room_for(step); };
+  recorder.probes = &probes;
   while (stepper.step() < n) {
     const auto most = std::min(at_once, n - stepper.step());
     probes.expect(stepper.step(), most);
-    stepper.advance(recorder, most, callbacks);
+    stepper.advance(recorder, most);
     if (const double* shown = at_once == 1 ? probes.room_for(stepper.step()) : nullptr) {
       EXPECT_TRUE(std::ranges::equal(stepper.probed_u_m(), std::span(shown, v.size()))) << stepper.step();
     }
@@ -197,7 +196,7 @@ class PassingPulse {
     }
     const auto state = support::in_flight(mesh_, u, v);
     stepper_->start(state, 1);
-    Recorder recorder(state, 1.3, 0);
+    support::RowRecorder recorder(state, 1.3, 0);
     return take_steps(*stepper_, recorder, std::llround(30e-6 / stepper_->step_s()), at_once, interval_s);
   }
 

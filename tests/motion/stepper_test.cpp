@@ -197,12 +197,13 @@ TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
     stepper.start(e, 0,
                   {.trigger_force_N_per_m = std::vector<double>(mesh.interface_nodes.size(), 1.0),
                    .trigger = {.ramp_s = 1e-6}});
-    Recorder recorder(e, mu_s, 1);
+    support::RowRecorder recorder(e, mu_s, 1);
     record::History history;
+    recorder.to_row = [&] { return &history; };
     while (stepper.step() < n_steps) {
       const auto before = stepper.step();
       const auto most = std::min<std::int64_t>(block, n_steps - before);
-      EXPECT_EQ(stepper.advance(recorder, most, {.sample = [&] { return &history; }}), most);
+      EXPECT_EQ(stepper.advance(recorder, most), most);
       EXPECT_EQ(stepper.step(), before + most);
     }
     EXPECT_GT(std::ranges::max(history.p_Pa), 0);
@@ -234,7 +235,7 @@ TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
     const auto precision = k == 0 ? Precision::double_precision : Precision::single_precision;
     UnderWay way({mesh, {}, gentle_law, {.precision = precision, .interface_substeps = substeps}}, e, 1);
     balance[k] = {way.stepper.energies()};
-    EXPECT_EQ(way.stepper.advance(way.recorder, n_steps, {}), n_steps);
+    EXPECT_EQ(way.stepper.advance(way.recorder, n_steps), n_steps);
     balance[k].look(way.stepper.energies());
     u[k] = way.stepper.u_m();
     v[k] = way.stepper.v_m_per_s();
@@ -267,12 +268,12 @@ TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
   const auto mesh = tiny_plate(Corner::none);
   const solid::Material material;
   const auto e = statics::Statics(mesh, material, support::tilted, mu_s).shear_to(0.5);
-  UnderWay way({mesh, material, paper_law, {}}, e, 0);
-  auto& [stepper, recorder] = way;
+  Stepper stepper(mesh, material, paper_law, {});
+  stepper.start(e, 0);
+  support::RowRecorder recorder(e, mu_s, 0);
   record::History history;
-  stepper.advance(recorder, &history);
-  stepper.advance(recorder);
-  stepper.advance(recorder, &history);
+  recorder.to_row = [&] { return stepper.step() == 1 ? nullptr : &history; };
+  for (int step = 0; step < 3; ++step) stepper.advance(recorder);
   ASSERT_EQ(history.time_s.size(), 2);
   EXPECT_EQ(history.time_s[0], 0);
   EXPECT_DOUBLE_EQ(history.time_s[1], 2 * stepper.step_s());

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 
 #include "interface/friction/velocity_weakening.hpp"
 #include "motion/event.hpp"
@@ -107,6 +109,21 @@ struct Balance {
                               now.prestress_work, now.friction_work})
       largest_J = std::max(largest_J, std::abs(term));
   }
+};
+
+/// Records rows of the history and displacements of the probes, too.
+class RowRecorder final : public Recorder {
+ public:
+  using Recorder::Recorder;
+  record::History* row() override { return to_row(); }
+  double* displacements(std::int64_t step) override {
+    return probes != nullptr ? probes->room_for(step) : nullptr;
+  }
+  std::int64_t guaranteed_steps() override { return n_guaranteed; }
+
+  std::function<record::History*()> to_row = [] { return nullptr; };
+  ProbeRecorder* probes = nullptr;
+  std::int64_t n_guaranteed = 1;
 };
 
 /// A stepper on its way from a state, whose energies are looked at after each step where that is asked for.

@@ -60,7 +60,7 @@ class Onsets final : public Observer {
 };
 
 /// Shows the changes of slip to a record alone, for steps that no one else observes.
-class Recorder final : public SlipObserver {
+class Recorder : public SlipObserver {
  public:
   /// @param before  the state at time 0, before the first (sub-)step
   /// @param mu_s    coefficient at rest in that state
