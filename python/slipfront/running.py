@@ -273,7 +273,7 @@ def checked_at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray
     if len(values) not in (1, len(like)):
         raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
     if not (np.isfinite(values) & (values >= least)).all():
-        raise CaseError(f"{name} must be {'at least 0 and ' if least == 0 else ''}a finite number")
+        raise CaseError(f"{name} gives a value that is not {'at least 0 and ' if least == 0 else ''}finite")
     return np.ascontiguousarray(np.broadcast_to(values, like.shape))
 
 
@@ -330,11 +330,16 @@ def run_with_law(
     and d_c. Case and changes as for `run`. The run takes one thread. Its files name the case's own law, so
     that they cannot be kept in a folder or gone on with: they go with the returned object. Raises what `mu`
     raises, CaseError where it gives no number or one below 0, and as `run` does."""
+    for name in ("observers", "output"):
+        if callable(tables.get(name)) or isinstance(tables.get(name), (list, tuple, str)):
+            raise CaseError(f"run_with_law takes no {name}: results go with the returned object")
     prepared = make_case(case, changes, tables)
     if evolve is not None and not callable(evolve):
         raise CaseError(f"evolve is {shown(evolve)}; it must be a function of a time, slip rates and states")
     if (initial is None) != (states is None) or (initial is not None and evolve is None):
         raise CaseError("states of a law's own need evolve, states and initial; give all of them")
+    if states is not None and not isinstance(states, Mapping):
+        raise CaseError(f"states is {shown(states)}; it must be units by names, such as {{'psi_1': '1'}}")
     if initial is not None and not callable(initial):
         raise CaseError(f"initial is {shown(initial)}; it must be a function of t_Pa and p_Pa")
     for name in states or ():
@@ -345,7 +350,8 @@ def run_with_law(
     def states_of(given: Any, name: str, n_states: int, like: np.ndarray) -> list[np.ndarray]:
         values = given if isinstance(given, tuple) else (given,)
         if len(values) != n_states:
-            raise CaseError(f"{name} returns {len(values)} states, not a tuple of {n_states}")
+            given_as = "" if isinstance(given, tuple) else f" (of type {type(given).__name__})"
+            raise CaseError(f"{name} returns {len(values)} state{given_as}; it must be a tuple of {n_states}")
         return [checked_at_nodes(value, name, -math.inf, like) for value in values]
 
     def after(dt_s: float, speed_m_per_s: np.ndarray, *now: np.ndarray) -> list[np.ndarray]:

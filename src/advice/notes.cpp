@@ -77,8 +77,10 @@ void add_odd_units_of_friction(const Problem& problem, Diagnostics& notes) {
     const double value = problem.friction.law.parameter(parameter.key);
     if (key.starts_with("friction.mu") && value > 5)
       add_note(key, value, "hardly any pair of solids has such friction; is it in per cent?", notes);
-    if (key == "friction.d_c_m" && value > 1e-3 * problem.width_m())
+    if (key.starts_with("friction.d_c") && value > 1e-3 * problem.width_m())
       add_note(key, value, "more than a thousandth of plate.width_m; is it in m?", notes);
+    if (key == "friction.V_i_m_per_s" && value > 0.01)
+      add_note(key, value, "as fast as slip in an event, which is to begin from it; is it in m/s?", notes);
   }
 }
 
@@ -90,12 +92,13 @@ void add_odd_pressures(const Problem& problem, Diagnostics& notes) {
   if (problem.has_below()) E_Pa = std::min(E_Pa, problem.below().material.youngs_modulus_Pa);
   if (!problem.is_prestressed()) {
     const double strain = nominal_pressure_Pa(problem) / E_Pa;
-    if (strain > max_strain)
+    if (strain > max_strain || strain < min_strain)
       notes.add(
-          Diagnostic::units, "the {} the plate by {:.3g} of Young's modulus{}, beyond small strains: {}?",
+          Diagnostic::units, "the {} the plate by {:.3g} of Young's modulus{}, {}: {}?",
           problem.loading.mean_pressure_Pa || problem.loading.normal_force_N_per_m ? "normal force presses"
                                                                                    : "tilt presses",
           strain, E_Pa < problem.above().material.youngs_modulus_Pa ? " of the base" : "",
+          strain > max_strain ? "beyond small strains" : "less than in any experiment",
           problem.loading.mean_pressure_Pa       ? "is loading.mean_pressure_Pa in Pa"
           : problem.loading.normal_force_N_per_m ? "is loading.normal_force_N_per_m in N per m of thickness"
                                                  : "are loading.tilt_left_m and loading.tilt_right_m in m");
@@ -169,7 +172,7 @@ void add_rows_beside_nodes(const Problem& problem, Diagnostics& notes) {
 /// What goes on between events and ends them.
 void add_sequence(const Problem& problem, Diagnostics& notes) {
   if (!problem.is_sequence()) return;
-  constexpr double few = 0.1, most_of_strength = 0.01, most_healing = 0.1;
+  constexpr double few = 0.1, most_healing = 0.1;
   double c_S = infinity;
   for (const auto& body : problem.bodies) c_S = std::min(c_S, solid::shear_speed_m_per_s(body.material));
   const double period_s = 4 * problem.greatest_height_m() / c_S;
@@ -178,7 +181,22 @@ void add_sequence(const Problem& problem, Diagnostics& notes) {
               "time.quiet_s = {:g} s is far below 4 H/c_S = {:.3g} s: waves of an event that come back "
               "later count for nothing, or begin the next event",
               problem.time.quiet_s, period_s);
-  const double load_m_per_s = std::max(problem.path().fastest_m_per_s(), problem.shear_speed_m_per_s);
+  if (const auto& shears_m = problem.sequence.path.shears_m;
+      !shears_m.empty() && std::ranges::max(shears_m) > problem.width_m())
+    add_note("sequence.shears_m up to", std::ranges::max(shears_m), "farther than plate.width_m; is it in m?",
+             notes);
+  if (problem.sequence.healing_per_e_fold > most_healing)
+    add_note("sequence.healing_per_e_fold", problem.sequence.healing_per_e_fold,
+             "surfaces gain some 0.01 in mu_s an e-fold of time at rest; is it in per cent?", notes);
+}
+
+/// A load that moves so fast that its waves matter.
+void add_fast_load(const Problem& problem, Diagnostics& notes) {
+  constexpr double most_of_strength = 0.01;
+  const bool has_path = !problem.sequence.path.times_s.empty();
+  const double load_m_per_s = problem.is_sequence()
+                                  ? std::max(problem.path().fastest_m_per_s(), problem.shear_speed_m_per_s)
+                                  : shear_speed_in_event_m_per_s(problem);
   const double wave_Pa = load_m_per_s * solid::shear_modulus_Pa(problem.above().material) /
                          solid::shear_speed_m_per_s(problem.above().material);
   const double strength_Pa =
@@ -186,14 +204,11 @@ void add_sequence(const Problem& problem, Diagnostics& notes) {
   if (strength_Pa > 0 && wave_Pa > most_of_strength * strength_Pa)
     notes.add(
         Diagnostic::physics,
-        "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: between events it is "
-        "taken for static, and in them it works; are {} slow enough?",
+        "the load moves at up to {:.3g} m/s, whose waves carry {:.2g} of the strength: {}; {} slow enough?",
         load_m_per_s, wave_Pa / strength_Pa,
-        problem.sequence.path.times_s.empty() ? "loading.shear_speed_m_per_s"
-                                              : "sequence.times_s and loading.shear_speed_m_per_s");
-  if (problem.sequence.healing_per_e_fold > most_healing)
-    add_note("sequence.healing_per_e_fold", problem.sequence.healing_per_e_fold,
-             "surfaces gain some 0.01 in mu_s an e-fold of time at rest; is it in per cent?", notes);
+        problem.is_sequence() ? "between events it is taken for static, and in them it works"
+                              : "it drives the event on",
+        has_path ? "are sequence.times_s and loading.shear_speed_m_per_s" : "is loading.shear_speed_m_per_s");
 }
 
 /// A pusher that leaves nothing of the side.
@@ -297,6 +312,9 @@ void add_times(const Problem& problem, double step_s, Diagnostics& notes) {
               "the plate; is it in s?",
               problem.time.end_s, problem.time.end_s / step_s,
               problem.time.end_s * solid::shear_speed_m_per_s(problem.above().material) / width_m);
+  if (problem.output.history_interval_s > arrival_s)
+    add_note("output.history_interval_s", problem.output.history_interval_s,
+             "a shear wave crosses the plate between two rows; is it in s?", notes);
   if (const double p_Pa = nominal_pressure_Pa(problem),
       rate = problem.prestress ? -problem.prestress->p_rate_Pa_per_s : 0;
       rate * problem.time.end_s > p_Pa)
@@ -343,6 +361,7 @@ Diagnostics notes_of_case(const Problem& problem, const RuptureOutlook& rupture,
   add_stiff_machine(problem, notes);
   add_damping(problem, notes);
   add_sequence(problem, notes);
+  add_fast_load(problem, notes);
   add_pusher(problem, notes);
   add_tip_rate(problem, notes);
   if (problem.time.step_factor > 1)

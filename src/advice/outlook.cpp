@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 
 #include "base/numbers.hpp"
@@ -290,6 +291,9 @@ RuptureOutlook outlook_of(const Problem& problem, const Inside& inside, const st
   RuptureOutlook o;
   o.nominal = nominal;
   o.of_nodes = stability::outlook(materials_of(problem), nodes);
+  if (o.of_nodes.nucleation_length_m && problem.friction.law.never_sticks() &&
+      problem.friction.law.name() != std::string_view("rate_and_state_aging"))
+    o.of_nodes.nucleation_length_m = nan;  // Rubin and Ampuero's is that of the aging law with one state
   o.trigger_length_m = trigger_length_m(problem);
   if (problem.friction.law.never_sticks()) o.tip_slip_rate_m_per_s = tip_slip_rate_m_per_s(problem);
   o.steady_sliding = steady_sliding(problem, x_m);

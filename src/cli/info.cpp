@@ -135,7 +135,7 @@ std::string text_of(const stability::Spread& spread) {
 }
 
 /// What a law that weakens over a slip lets expect.
-void add_lengths(const advice::RuptureOutlook& rupture, std::string_view law, Listing& list) {
+void add_lengths(const advice::RuptureOutlook& rupture, Listing& list) {
   const auto& o = rupture.of_nodes;
   const bool never_sticks = rupture.tip_slip_rate_m_per_s.has_value();
   const auto add_zone = [&] {
@@ -154,7 +154,7 @@ void add_lengths(const advice::RuptureOutlook& rupture, std::string_view law, Li
                            ? fmt::format("; the trigger has {:.3g} m", *rupture.trigger_length_m)
                            : std::string();
   list.add("nucleation length",
-           never_sticks && law != "rate_and_state_aging"
+           std::isnan(*o.nucleation_length_m)
                ? std::string("unknown: that of the aging law with one state holds for no other")
                : fmt::format("{:.3g} m ({}): slow slip over it runs away", *o.nucleation_length_m,
                              never_sticks ? "Rubin, Ampuero 2005, aging law" : "Uenishi, Rice 2003"));
@@ -186,7 +186,7 @@ void add_cracks(const advice::FracturePrediction& p, Listing& list) {
   list.add("fronts as cracks", text);
 }
 
-void add_rupture(const advice::RuptureOutlook& rupture, std::string_view law, Listing& list) {
+void add_rupture(const advice::RuptureOutlook& rupture, Listing& list) {
   if (rupture.tip_slip_rate_m_per_s) {
     list.add("a front's tip",
              fmt::format("where the slip rate passes {:.3g} m/s", *rupture.tip_slip_rate_m_per_s));
@@ -199,7 +199,7 @@ void add_rupture(const advice::RuptureOutlook& rupture, std::string_view law, Li
     list.add("seismic ratio 1/(1 + S)", text_of(rupture.of_nodes.drop_ratio));
     list.add("expected regime", rupture.of_nodes.regime);
   }
-  add_lengths(rupture, law, list);
+  add_lengths(rupture, list);
 }
 
 void add_mesh_choice(const Problem& problem, const advice::MeshChoice& mesh, Listing& list) {
@@ -285,7 +285,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
                          engineering(speed_m_per_s, "m/s", 3),
                          engineering(speed_m_per_s * problem.time.end_s, "m", 3)));
   add_stability_of_sliding(info, list);
-  add_rupture(info.rupture, problem.friction.law.name(), list);
+  add_rupture(info.rupture, list);
   if (info.rupture.cracks) add_cracks(*info.rupture.cracks, list);
   if (info.cheapest_mesh) add_mesh_choice(problem, *info.cheapest_mesh, list);
   print_output(list.text + lines_of(given, info.notes));

@@ -127,7 +127,8 @@ std::string engineering(double value, const char* unit, int digits) {
 }
 
 std::string set_up(const Problem& problem) {
-  return fmt::format("{}; {}; {}", bodies(problem), law(problem), event(problem));
+  return fmt::format("{}; pressed by {}; {}; {}", bodies(problem),
+                     engineering(nominal_pressure_Pa(problem), "Pa", 3), law(problem), event(problem));
 }
 
 std::string speed(double m_per_s, const solid::WaveSpeeds& speeds) {

@@ -16,7 +16,7 @@ namespace slipfront::cli {
 /// A number with the prefix of its unit that leaves 1 to 1000 before the point: "71.9 us", "2.6 GPa".
 std::string engineering(double value, const char* unit, int digits = 4);
 
-/// What a case is of: bodies, material, law, event.
+/// What a case is of: bodies, material, mean pressure, law, event.
 std::string set_up(const Problem& problem);
 
 /// "1080 m/s (0.68 c_L, 1.21 c_S)"

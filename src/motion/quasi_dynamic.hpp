@@ -72,7 +72,8 @@ class QuasiDynamicSlip {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(now_, rates_.u_x, rates_.law_states, works_.of_load_J_per_m, works_.of_friction_J_per_m,
-            works_.of_contact_J_per_m, works_.radiated_J_per_m, light_Pa_, next_dt_s_, n_steps_);
+            works_.of_contact_J_per_m, works_.radiated_J_per_m, light_Pa_, next_dt_s_, n_steps_,
+            edge_speed_m_per_s_);
     if (archive.is_loading()) restored();
   }
 

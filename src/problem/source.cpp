@@ -107,8 +107,12 @@ bool is_continuation(const Problem& problem, const Problem& done) {
   const auto begins_as = [](const std::vector<double>& values, const std::vector<double>& begin) {
     return values.size() >= begin.size() && std::equal(begin.begin(), begin.end(), values.begin());
   };
-  const auto &path = problem.sequence.path, &done_path = done.sequence.path;
-  return problem.is_sequence() && done.is_sequence() && without_end(now) == without_end(then) &&
+  const auto &sequence = problem.sequence, &done_sequence = done.sequence;
+  const auto &path = sequence.path, &done_path = done_sequence.path;
+  const bool ends_later = sequence.max_events >= done_sequence.max_events &&
+                          sequence.end_s >= done_sequence.end_s &&
+                          sequence.to_global_sliding <= done_sequence.to_global_sliding;
+  return problem.is_sequence() && done.is_sequence() && ends_later && without_end(now) == without_end(then) &&
          now.prestress_table == then.prestress_table && now.friction_table == then.friction_table &&
          path.times_s.empty() == done_path.times_s.empty() && begins_as(path.times_s, done_path.times_s) &&
          begins_as(path.shears_m, done_path.shears_m);

@@ -29,7 +29,7 @@ void require_same_keys(const Source& wanted, const Source& begun, const std::str
 void require_same_case(const Source& wanted, const Source& begun);
 
 /// Whether a problem is a sequence that goes on where another one has ended: the two differ at most in what
-/// ends them, and its loading begins as that of the other.
+/// ends them, which comes no sooner, and its loading begins as that of the other.
 bool is_continuation(const Problem& problem, const Problem& done);
 
 /// All of a problem's case but the prescribed tractions, which rank 0 alone needs.

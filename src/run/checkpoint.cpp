@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Begins every checkpoint. The number goes up when what follows changes.
-const std::string magic = "slipfront checkpoint 12";
+const std::string magic = "slipfront checkpoint 13";
 
 constexpr std::size_t n_kept = 2;
 constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";

@@ -139,7 +139,13 @@ record::LoadingRow Creep::loading_row(record::LoadingPhase phase, const record::
   return now;
 }
 
+void Creep::begin_part(double time_s, double shear_m) {
+  part_end_s_ = sample_.path.part_end_s(time_s);
+  slow_.set_edge_speed(sample_.path.speed_m_per_s(time_s, shear_m + sample_.rest.moved_m));
+}
+
 void Creep::begin() {
+  if (sample_.rest.time_s < sample_.path.end_s()) begin_part(sample_.rest.time_s, sample_.rest.shear_m);
   slow_.start(sample_.rest.time_s, sample_.rest.shear_m, sample_.rest.contact, sample_.rest.u_x_m,
               sample_.rest.law_states);
   const auto& state = slow_.state();
@@ -184,9 +190,8 @@ bool Creep::slip_to_next(const Rows& rows) {
   };
   bool begins = false;
   while (!begins && state.time_s < sample_.path.end_s()) {
-    slow_.set_edge_speed(sample_.path.speed_m_per_s(state.time_s, state.shear_m + sample_.rest.moved_m));
-    begins = slow_.slip_until(sample_.path.part_end_s(state.time_s),
-                              inertia_slip_rate_m_per_s(sample_.problem), after_step);
+    if (state.time_s >= part_end_s_) begin_part(state.time_s, state.shear_m);
+    begins = slow_.slip_until(part_end_s_, inertia_slip_rate_m_per_s(sample_.problem), after_step);
   }
   give_row();
   rows_.reset();
@@ -211,6 +216,7 @@ bool Creep::slip_to_next(const Rows& rows) {
 
 void Creep::serialize(StateArchive& archive) {
   archive(slow_);
+  archive(part_end_s_);
   if (archive.is_loading()) rows_.emplace(slow_, sample_.initial.tributary_m);
   archive(*rows_);
 }

@@ -94,6 +94,9 @@ class Creep {
 
  private:
   void begin();
+  /// Lets the edge move to where the path is at the end of the part that begins. @param shear_m  as the
+  /// sample's
+  void begin_part(double time_s, double shear_m);
   /// @param u_x_per_shear  see statics::Statics::slid_to
   statics::Equilibrium slid_to(std::vector<double> u_x_per_shear) const;
   /// The row of the loading after another one from which slow slip has begun.
@@ -102,6 +105,7 @@ class Creep {
   Sample& sample_;
   motion::QuasiDynamicSlip slow_;
   std::optional<CreepRows> rows_;  ///< under way
+  double part_end_s_ = 0;          ///< of the part of the path under way
 };
 
 }  // namespace slipfront::run

@@ -121,7 +121,7 @@ Diagnostics notes_of_sequence(const Problem& problem, std::span<const record::Se
 
 /// sequence.json, events.csv and loading.csv of a sequence so far.
 /// @param end  why it ended, in words; empty before
-void write_sequence(const std::filesystem::path& dir, const Problem& problem,
+void write_sequence(const std::filesystem::path& dir, const Problem& problem, const Diagnostics& notes,
                     std::span<const record::SequenceEvent> events,
                     std::span<const record::LoadingRow> loading, const std::string& end,
                     const Status& status);

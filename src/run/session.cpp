@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "advice/needs.hpp"
+#include "advice/notes.hpp"
 #include "base/caller.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
@@ -101,6 +102,12 @@ class Session {
   std::string part() const { return sequence_ ? fmt::format("event {}", number()) : "event"; }
   /// Of the event that comes next or is under way, from 1.
   std::size_t number() const { return sequence_->events().size() + 1; }
+  /// On the sequence so far.
+  Diagnostics notes() const {
+    auto all = notes_of_case_;
+    all.add(notes_of_sequence(problem_, sequence_->events()));
+    return all;
+  }
   fs::path slow_dir() const { return results::slow_folder(dir_, number()); }
   std::vector<results::RowFormat> slow_files() const {
     auto slow = setup::output_setup(problem_, 0, 0, 0);
@@ -129,6 +136,7 @@ class Session {
   std::string keeps_;  ///< note of a checkpoint that was asked for
 
   std::optional<Sequence> sequence_;
+  Diagnostics notes_of_case_;                  ///< of a sequence
   bool extends_ = false;                       ///< a sequence that is complete in the folder
   std::vector<std::string> sums_;              ///< of the lists of checksums of the events that are done
   std::vector<std::string> slow_sums_;         ///< of the histories of slow slip before them
@@ -173,7 +181,7 @@ Finished Session::go_on(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   }
   finished.events = sequence_->events();
   finished.loading = sequence_->loading();
-  finished.notes = notes_of_sequence(problem_, finished.events);
+  finished.notes = notes();
   finished.end = sequence_->end();
   if (finished.end.empty())
     finished.end =
@@ -215,9 +223,11 @@ Finished Session::keeping_failures(const std::function<Finished()>& work) {
 void Session::begin(Checkpoints::Checkpoint* kept) {
   advice::require_memory_fits(problem_, processes_);
   write_status({"running", "before the event", head_.sessions});
-  if (problem_.is_sequence())
+  if (problem_.is_sequence()) {
+    notes_of_case_ = advice::notes_of_case(problem_);
     sequence_.emplace(
         problem_, [this](std::int64_t, std::int64_t) { return look_at_statics(); }, processes_);
+  }
   if (kept == nullptr) return;
   if (sequence_) read_sequence(kept->body, kept->head.in_event);
   if (!kept->head.in_event) return;
@@ -369,6 +379,8 @@ const InitialState* Session::next_state() {
 
 UserError Session::does_not_rest(const Result& result) const {
   const auto what = fmt::format("{} has not come to rest: {}", part(), end_of_event(result));
+  if (result.event.end == motion::EventEnd::observer)
+    return UserError("{}; {}", what, what_was_kept(folder_));
   const auto& row = result.event.interface_at_end;
   const auto sum = [](const auto& values) { return std::accumulate(values.begin(), values.end(), 0.); };
   if (std::abs(sum(row.slip_rate_m_per_s)) * result.event.time_s >= std::abs(sum(row.slip_m)))
@@ -443,9 +455,9 @@ void Session::keep() {
 void Session::write_status(const Status& status, const std::string& end) {
   if (!problem_.is_sequence()) return run::write_status(dir_, problem_, status);
   if (sequence_)
-    write_sequence(dir_, problem_, sequence_->events(), sequence_->loading(), end, status);
+    write_sequence(dir_, problem_, notes(), sequence_->events(), sequence_->loading(), end, status);
   else
-    write_sequence(dir_, problem_, {}, {}, end, status);
+    write_sequence(dir_, problem_, {}, {}, {}, end, status);
 }
 
 void Session::fail(const char* status, const std::string& reason) noexcept {
@@ -475,11 +487,29 @@ void require_room(const results::ResultFolder& folder, const Problem& problem) {
   folder.require_room(problem.is_sequence() ? problem.sequence.max_events : 0);
 }
 
+/// A file that is missing of those that a folder's list of checksums names, and of the lists among them; the
+/// list itself where there is none.
+std::optional<fs::path> missing_file(const fs::path& dir) {
+  const auto sums = files::read_checksums(dir);
+  if (sums.empty()) return dir / files::checksum_list;
+  for (const auto& [name, sum] : sums) {
+    const auto file = dir / name;
+    if (!files::is_there(file)) return file;
+    if (file.filename() != files::checksum_list) continue;
+    if (auto missing = missing_file(file.parent_path())) return missing;
+  }
+  return {};
+}
+
 /// The problem of the work that was left unfinished in a folder. @param expected  whose case it must be, or
 /// null
 Problem unfinished_problem(const results::ResultFolder& folder, const Problem* expected) {
-  if (!folder.has_unfinished() || !files::is_there(folder.unfinished() / problem::case_file))
+  if (!folder.has_unfinished() || !files::is_there(folder.unfinished() / problem::case_file)) {
+    if (files::is_there(folder.dir() / sequence_file))
+      if (const auto missing = missing_file(folder.dir()))
+        throw UserError("{}: is missing; restore it, or start a new run", missing->string());
     throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
+  }
   auto problem = problem::read_problem(folder.unfinished());
   if (expected != nullptr) require_same_case(expected->source, problem.source);
   return problem;
@@ -510,16 +540,6 @@ UnfinishedWork load_unfinished(const results::ResultFolder& folder, const Proble
   }
   problem::write_case(folder.unfinished(), problem.source);  // as it was, however it was written meanwhile
   return work;
-}
-
-/// Whether all files are there that a folder's list of checksums names, and those of the lists among them.
-bool has_all(const std::filesystem::path& dir) {
-  const auto sums = files::read_checksums(dir);
-  return !sums.empty() && std::ranges::all_of(sums, [&](const auto& named) {
-    const auto file = dir / named.first;
-    if (!files::is_there(file)) return false;
-    return file.filename() != files::checksum_list || has_all(file.parent_path());
-  });
 }
 
 }  // namespace
@@ -629,7 +649,7 @@ void require_came_to_end(const Result& result, const results::ResultFolder& fold
 
 bool is_complete(const std::filesystem::path& dir) {
   const auto is_there = [&](const char* name) { return files::is_there(dir / name); };
-  if (is_there(sequence_file)) return has_all(dir);
+  if (is_there(sequence_file)) return !missing_file(dir);
   return is_there(files::checksum_list) && is_there("run.json") && is_there(results::history_output.file);
 }
 

@@ -346,7 +346,7 @@ Json loads_json(const record::LoadingRow& row) {
 
 }  // namespace
 
-void write_sequence(const std::filesystem::path& dir, const Problem& problem,
+void write_sequence(const std::filesystem::path& dir, const Problem& problem, const Diagnostics& notes,
                     std::span<const record::SequenceEvent> events,
                     std::span<const record::LoadingRow> loading, const std::string& end,
                     const Status& status) {
@@ -358,7 +358,7 @@ void write_sequence(const std::filesystem::path& dir, const Problem& problem,
   json["end"] = end.empty() ? Json() : Json(end);
   json["wave_speeds"] = speeds_json(solid::wave_speeds(problem.above().material));
   json["events"] = events.size();
-  json["notes"] = notes_json(notes_of_sequence(problem, events));
+  json["notes"] = notes_json(notes);
   if (!loading.empty()) {
     json["largest_friction"] = loads_json(record::strongest(loading));
     json["last"] = loads_json(loading.back());

@@ -218,6 +218,8 @@ def test_events_count_by_their_longest_patch(program, tmp_path):
         *sets("plate.element_size_m=4e-3", "sequence.max_events=2"),
     ]
     printed = require_done(program("run", *case, "-o", "out")).stdout
+    of_case = [line for line in program("validate", *case).stdout.splitlines() if line.startswith("note: ")]
+    assert of_case and set(of_case) <= set(printed.splitlines())
     assert "\n1 of them longer than the nucleation length, or global\n" in printed
     first, second = rows_of(tmp_path / "out" / "events.csv")
     # Two patches, at the ends of what the first one has broken.
@@ -256,6 +258,7 @@ FAST = ["sequence.times_s=[1e-6]", "sequence.shears_m=[20e-6]"]
         (STICKING, ["time.quiet_s=1e-6"], "time.quiet_s = 1e-06 s is far below 4 H/c_S"),
         (STICKING, FAST, "the load moves at up to 20 m/s"),
         (STICKING, ["loading.shear_speed_m_per_s=0.16"], "the load moves at up to"),
+        (STICKING, ["sequence.times_s=[1e6]", "sequence.shears_m=[0.9]"], "sequence.shears_m up to = 0.9: "),
         (STICKING, ["sequence.healing_per_e_fold=10"], "sequence.healing_per_e_fold = 10: "),
         (STICKING, ["material.poissons_ratio=-0.999"], "material.poissons_ratio = -0.999: "),
         (STICKING, ["plate.element_size_m=5e-3", *PUSHED], "the pusher covers 95 % of the side"),

@@ -65,6 +65,13 @@ input::Case rate_and_state_case(int max_events) {
   return config;
 }
 
+/// The same along a path, whose parts end before the first event and between others.
+input::Case rate_and_state_path(int max_events) {
+  auto config = rate_and_state_case(max_events);
+  config.sequence.path = {{20, 50, 1000}, {4e-5, 9e-5, 1.6e-3}};
+  return config;
+}
+
 /// A block that a soft pusher moves under a dead load.
 input::Case pushed_block(int max_events) {
   auto config = sequence_case(max_events, 0.5);
@@ -440,6 +447,7 @@ TEST(Sequences, AreTheSameWhereverTheyWereStopped) {
        {Stopped{"plain", sequence_case(3), 3 + 3 * 6},
         {"healing", healing, 3 + 3 * 6},
         {"law with a state", rate_and_state_case(3), 3 + 3 * 7},  // and slow slip before it
+        {"law with a state along a path", rate_and_state_path(3), 3 + 3 * 7},
         {"pushed by a spring", pushed_block(3), 3 + 3 * 6}}) {
     SCOPED_TRACE(name);
     const test::TemporaryFolder folder;
@@ -464,6 +472,7 @@ TEST(Sequences, AreExtended) {
   for (const auto& sample : {std::pair{"plain", sequence_case(4)},
                              {"healing", healing},
                              {"law with a state", rate_and_state_case(3)},
+                             {"law with a state along a path", rate_and_state_path(3)},
                              {"ended by time", sequence_case(3)}}) {
     const std::string name = sample.first;
     const auto& longer = sample.second;
@@ -498,11 +507,17 @@ TEST(Sequences, AreExtended) {
     EXPECT_THROW(go_on(longer, stopping_at(fmt::format("event {}", events.size()), 100)), Interrupted);
     EXPECT_TRUE(is_complete(extended));  // what it was
     go_on(longer);
-    auto expected = tables_in(whole), found = tables_in(extended);
+    const auto all = tables_in(extended);
+    auto expected = tables_in(whole), found = all;
     for (auto* tables : {&expected, &found})  // others name the case, whose end is another one
       std::erase_if(*tables, [](const auto& file) { return !file.first.ends_with(".csv"); });
     EXPECT_EQ(found, expected);
     EXPECT_TRUE(is_complete(extended));
+    EXPECT_THAT(error_of([&] { go_on(shorter); }), HasSubstr("is another case"));
+    auto global = longer;
+    global.sequence.to_global_sliding = true;
+    EXPECT_THAT(error_of([&] { go_on(global); }), HasSubstr("is another case"));
+    EXPECT_EQ(tables_in(extended), all);
   }
 }
 
@@ -602,7 +617,7 @@ TEST_F(SequenceInAFolder, WhatTheFirstEventHasComeToIsKept) {
 }
 
 TEST_F(SequenceInAFolder, SlowSlipGoesOnWhereItWasStopped) {
-  const auto config = rate_and_state_case(2);
+  const auto config = rate_and_state_path(2);
   std::vector<std::size_t> n_asked;
   for (const int stop_at : {40, 300}) {
     fs::remove_all(dir_);

@@ -100,10 +100,11 @@ class MomentRate final : public motion::Observer {
 
 constexpr std::array<Description, 4> moment_rate_fields = {{
     {"potency_rate_m2_per_s", "m2/s", "slip rate, summed over the interface"},
-    {"moment_rate_N_per_s", "N/s", "the same times the shear modulus of the plate, per unit thickness"},
+    {"moment_rate_N_per_s", "N/s", "potency rate times the shear modulus of the plate, per unit thickness"},
     {"right_potency_rate_m2_per_s", "m2/s",
      "potency rate as S waves show it that leave to +x, from the right end of the interface"},
-    {"left_potency_rate_m2_per_s", "m2/s", "that of those which leave to -x, from its left end"},
+    {"left_potency_rate_m2_per_s", "m2/s",
+     "potency rate as S waves show it that leave to -x, from the left end of the interface"},
 }};
 
 }  // namespace
