@@ -351,7 +351,7 @@ def run_with_law(
         values = given if isinstance(given, tuple) else (given,)
         if len(values) != n_states:
             given_as = "" if isinstance(given, tuple) else f" (of type {type(given).__name__})"
-            raise CaseError(f"{name} returns {len(values)} state{given_as}; it must be a tuple of {n_states}")
+            raise CaseError(f"{name} returns {len(values)} state{'s' if len(values) != 1 else ''}{given_as}; it must be a tuple of {n_states}")
         return [checked_at_nodes(value, name, -math.inf, like) for value in values]
 
     def after(dt_s: float, speed_m_per_s: np.ndarray, *now: np.ndarray) -> list[np.ndarray]:

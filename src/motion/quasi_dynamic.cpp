@@ -14,6 +14,8 @@ namespace {
 
 /// Error of ln V by the states', and of slip over d_c, in a step.
 constexpr double accuracy = 1e-5;
+/// Slip over d_c by which a change of contact, which a step makes at its end, may come too late.
+constexpr double late = 1e-3;
 
 }  // namespace
 
@@ -80,7 +82,7 @@ void QuasiDynamicSlip::start(double time_s, double shear_m, std::vector<statics:
   next_dt_s_ = first_dt_s();
   balance(now_, rates_);
   light_Pa_ = light_pressure_Pa(now_.p_Pa, tributary_m_);
-  settle_contact();
+  settle_contact(now_, rates_);
   next_dt_s_ = first_dt_s();  // now that slip rates are known
   slide(now_, rates_);
   // Rates by differences hold over times in which states change little.
@@ -135,42 +137,58 @@ bool QuasiDynamicSlip::slip_until(double end_s, double slip_rate_m_per_s,
       continue;
     }
     if (is_last) next_.time_s = end_s;
+    const auto works = works_;
     add_works(now_, next_);
+    if (taken_s * settle_contact(next_, stages_.back()) > late) {
+      works_ = works;
+      bodies_ = statics_.sliding(now_.contact);
+      next_dt_s_ = 0.5 * taken_s;
+      slide(now_, rates_);
+      continue;
+    }
     std::swap(now_, next_);
     std::swap(rates_, stages_.back());
     ++n_steps_;
-    settle_contact();
     if (!after_step()) return false;
   }
   return false;
 }
 
-void QuasiDynamicSlip::settle_contact() {
+double QuasiDynamicSlip::settle_contact(QuasiDynamicState& state, Rates& rates) {
   constexpr int most = 100;
+  const auto contact = state.contact;
+  const auto rate_m_per_s = state.slip_rate_m_per_s;
   for (int i = 0; i < most; ++i) {
-    if (!correct_contact()) return;
-    const auto before = now_;
-    bodies_ = statics_.sliding(now_.contact);
-    balance(now_, rates_);
-    add_works(before, now_);
+    if (!correct_contact(state)) {
+      double change_per_s = 0;
+      for (std::size_t k = 0; k < contact.size(); ++k)
+        if (contact[k] == statics::Contact::stick && state.contact[k] == contact[k])
+          change_per_s = std::max(
+              change_per_s, std::abs(state.slip_rate_m_per_s[k] - rate_m_per_s[k]) / friction_.d_c_m()[k]);
+      return change_per_s;
+    }
+    const auto before = state;
+    bodies_ = statics_.sliding(state.contact);
+    balance(state, rates);
+    add_works(before, state);
   }
   throw UserError(
       "{:.6g} s after normal loading contact at the interface does not settle; press the bodies harder",
-      now_.time_s);
+      state.time_s);
 }
 
-bool QuasiDynamicSlip::correct_contact() {
+bool QuasiDynamicSlip::correct_contact(QuasiDynamicState& state) const {
   using statics::Contact;
   // Tension over the largest pressure, and overlap over the slip in which psi changes, that count.
   constexpr double tension = 1e-9, overlap = 1e-6;
-  const double least_p_Pa = -tension * std::ranges::max(now_.p_Pa);
+  const double least_p_Pa = -tension * std::ranges::max(state.p_Pa);
   bool changed = false;
-  for (std::size_t i = 0; i < now_.contact.size(); ++i) {
-    const double p_Pa = now_.p_Pa[i];
-    auto& contact = now_.contact[i];
+  for (std::size_t i = 0; i < state.contact.size(); ++i) {
+    const double p_Pa = state.p_Pa[i];
+    auto& contact = state.contact[i];
     const auto before = contact;
     if (contact == Contact::open)
-      contact = now_.gap_m[i] < -overlap * friction_.d_c_m()[i] ? Contact::slip : Contact::open;
+      contact = state.gap_m[i] < -overlap * friction_.d_c_m()[i] ? Contact::slip : Contact::open;
     else if (p_Pa < least_p_Pa)
       contact = Contact::open;
     else if (p_Pa < (contact == Contact::slip ? 2 : 1) * light_Pa_)

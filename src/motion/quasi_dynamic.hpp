@@ -91,8 +91,10 @@ class QuasiDynamicSlip {
   double try_step(double dt_s);
   void add_works(const QuasiDynamicState& from, const QuasiDynamicState& to);
   /// Lets nodes that would be pulled go, and those that come down touch.
-  void settle_contact();
-  bool correct_contact();
+  /// @return by how much that has changed the slip rate over d_c of nodes that stay in contact, at most, 1/s
+  double settle_contact(QuasiDynamicState& state, Rates& rates);
+  /// @return whether it has changed
+  bool correct_contact(QuasiDynamicState& state) const;
   /// @throws StateError where what was read is of another interface
   void restored();
 
