@@ -273,7 +273,7 @@ def checked_at_nodes(given: ArrayLike, name: str, least: float, like: np.ndarray
     if len(values) not in (1, len(like)):
         raise CaseError(f"{name} has {len(values)} values, not {len(like)}")
     if not (np.isfinite(values) & (values >= least)).all():
-        raise CaseError(f"{name} gives a value that is not {'at least 0 and ' if least == 0 else ''}finite")
+        raise CaseError(f"{name} gives a value that is {'below 0 or ' if least == 0 else ''}not finite")
     return np.ascontiguousarray(np.broadcast_to(values, like.shape))
 
 
@@ -350,8 +350,8 @@ def run_with_law(
     def states_of(given: Any, name: str, n_states: int, like: np.ndarray) -> list[np.ndarray]:
         values = given if isinstance(given, tuple) else (given,)
         if len(values) != n_states:
-            given_as = "" if isinstance(given, tuple) else f" (of type {type(given).__name__})"
-            raise CaseError(f"{name} returns {len(values)} state{'s' if len(values) != 1 else ''}{given_as}; it must be a tuple of {n_states}")
+            found = f"{len(values)} states" if isinstance(given, tuple) else f"one {type(given).__name__}"
+            raise CaseError(f"{name} returns {found}; it must be a tuple of {n_states} states")
         return [checked_at_nodes(value, name, -math.inf, like) for value in values]
 
     def after(dt_s: float, speed_m_per_s: np.ndarray, *now: np.ndarray) -> list[np.ndarray]:
@@ -410,7 +410,8 @@ def wave_speeds(**material: Any) -> _core.WaveSpeeds:
 
 def plate_of(element_size_m: float) -> dict[str, float]:
     """Table of a plate of squares, whose size the defaults of a case follow."""
-    return {"width_m": 100 * element_size_m, "height_m": 50 * element_size_m, "element_size_m": element_size_m}
+    h = element_size_m
+    return {"width_m": 100 * h, "height_m": 50 * h, "element_size_m": h}
 
 
 def stable_step_s(element_size_m: float, **material: Any) -> float:
@@ -434,8 +435,8 @@ def well_posedness(
 ) -> _core.WellPosedness:
     """Whether slow uniform sliding under a friction law has a growth that a finer mesh would not change.
 
-    friction, material, base: tables of a case file, base={"kind": "body", ...} for a second half-space; damping
-    is by default that of a case with such elements.
+    friction, material, base: tables of a case file, base={"kind": "body", ...} for a second half-space;
+    damping is by default that of a case with such elements.
     pressure_Pa: uniform, positive in compression. longest_wavelength_m: such as the length of the interface.
     Theory: docs/stability.md."""
     p_Pa = number(pressure_Pa, "pressure_Pa", above=0, finite=True)

@@ -4,6 +4,7 @@
 import json
 import os
 import shutil
+import tomllib
 from pathlib import Path
 
 import h5py
@@ -285,6 +286,22 @@ def test_wave_loss_is_right_to_half_a_step(program, tmp_path):
         half_step_J_per_m = 0.5 * run_json(folder)["dt_s"] * power_W_per_m
         assert 0 < -float(event["wave_loss_J_per_m"]) < half_step_J_per_m
         assert half_step_J_per_m < 0.03 * float(event["friction_work_J_per_m"])
+
+
+def test_changes_of_contact_come_in_time(program, tmp_path):
+    """Slip is so slow at first that its steps are long; points on the line of the path cut them."""
+    case = CASES / "wave_loss_negative.toml"
+    changes = sets("sequence.inertia_slip_rate_m_per_s=3.2e-5", "sequence.max_events=2")
+    changes += sets("time.precision=double", "time.interface_substeps=1")
+    path = tomllib.loads(case.read_text())["sequence"]
+    begins_s = []
+    for middle_s in ([], [9.0], [33.0, 40.0]):
+        times_s = [path["times_s"][0], *middle_s, path["times_s"][1]]
+        shears_m = np.interp(times_s, path["times_s"], path["shears_m"]).tolist()
+        finer = sets(f"sequence.times_s={times_s}", f"sequence.shears_m={shears_m}")
+        require_done(program("run", case, *changes, *finer, "-o", "out", "--overwrite", "-q"))
+        begins_s.append(float(rows_of(tmp_path / "out" / "events.csv")[0]["begin_s"]))
+    assert begins_s == pytest.approx([begins_s[0]] * 3, rel=3e-4)
 
 
 def test_energies_of_small_motions_need_double_precision(program, tmp_path):

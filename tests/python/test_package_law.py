@@ -81,8 +81,8 @@ def test_mistakes_of_a_law():
         slipfront.run_with_law(CASE, breaks, COULOMB)
     for law, message in (
         (lambda rate, slip: 1.0, r"mu\(0, 0\) is 1.0, the case's coefficient at rest 1.3"),
-        (lambda rate, slip: np.where(slip > 0, np.nan, 1.3), "mu gives a value that is not at least 0 and finite"),
-        (lambda rate, slip: np.where(slip > 0, np.inf, 1.3), "mu gives a value that is not at least 0 and finite"),
+        (lambda rate, slip: np.where(slip > 0, np.nan, 1.3), "mu gives a value that is below 0 or not"),
+        (lambda rate, slip: np.where(slip > 0, np.inf, 1.3), "mu gives a value that is below 0 or not"),
         (lambda rate, slip: 1.3 + 0j * slip, "complex numbers"),
         (lambda rate, slip: np.ones(3), "mu has 3 values, not 1"),
         (1.3, "mu is 1.3; it must be a function"),
@@ -183,8 +183,8 @@ def test_mistakes_of_a_law_with_states():
     mu, evolve = rate_and_state(0.01, [(0.016, 1e-6, 0.6)], 1e-6)
     for wrong, message in (
         (1.0, "evolve is 1.0; it must be a function"),
-        (lambda dt, rate, psi: np.nan, "evolve gives a value that is not finite"),
-        (lambda dt, rate, psi: (psi, psi), "evolve returns 2 states; it must be a tuple of 1"),
+        (lambda dt, rate, psi: np.nan, "evolve gives a value that is not"),
+        (lambda dt, rate, psi: (psi, psi), "evolve returns 2 states; it must be a tuple of 1 states"),
     ):
         with pytest.raises(slipfront.CaseError, match=message):
             slipfront.run_with_law(case, mu, evolve=wrong)
@@ -198,7 +198,7 @@ def test_mistakes_of_a_law_with_states():
         ({"states": None}, "need evolve, states and initial"),
         ({"initial": 0.6}, "initial is 0.6; it must be a function"),
         ({"states": {"t_Pa": "Pa"}}, "'t_Pa' cannot be a state's name"),
-        ({"states": {"a": "1", "b": "1"}}, r"initial returns 1 state \(of type float\); it must be a tuple of 2"),
+        ({"states": {"a": "1", "b": "1"}}, "initial returns one float; it must be a tuple of 2"),
     ):
         with pytest.raises(slipfront.CaseError, match=message):
             slipfront.run_with_law(case, mu, **(own | changed))
