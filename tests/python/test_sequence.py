@@ -116,6 +116,11 @@ def test_an_observer_sees_each_event(tmp_path):
     assert begun == [0.0] * N_EVENTS
 
 
+def test_an_observer_ends_a_sequence_with_its_reason(tmp_path):
+    with pytest.raises(slipfront.CaseError, match="an observer ended it at t = .* s: enough; the partial"):
+        slipfront.run(SEQUENCE, output=tmp_path / "out", observers=[(0, lambda state: "enough")])
+
+
 def test_a_sequence_that_is_complete_goes_on(folder, tmp_path):
     """By the package and by the command; the tables are those of one that was asked for from the start."""
     later = write_case(tmp_path, SEQUENCE.replace(f"events = {N_EVENTS}", f"events = {N_EVENTS + 1}"))

@@ -518,6 +518,8 @@ TEST(Sequences, AreExtended) {
     global.sequence.to_global_sliding = true;
     EXPECT_THAT(error_of([&] { go_on(global); }), HasSubstr("is another case"));
     EXPECT_EQ(tables_in(extended), all);
+    fs::remove(extended / "events/0001/energy.csv");
+    EXPECT_THAT(error_of([&] { go_on(longer); }), HasSubstr("events/0001/energy.csv: is missing"));
   }
 }
 
