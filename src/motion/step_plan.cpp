@@ -20,7 +20,8 @@ StepPlan step_plan(std::span<const BodySteps> bodies, const TimeStepping& time) 
     plan.period = std::lcm(plan.period, of_body.period());
     plan.bodies.push_back(std::move(of_body));
   }
-  plan.step_s = plan.lowest_step_s * (plan.period / time.interface_substeps);
+  const int n_lowest = plan.period / time.interface_substeps;  // each body's period is a multiple of these
+  plan.step_s = plan.lowest_step_s * n_lowest;
   for (auto& body : plan.bodies) body.has_common_step = body.period() == plan.period;
   return plan;
 }

@@ -65,7 +65,7 @@ class ResultStream::File final : public RowSink {
   std::vector<double> block_;    ///< rows that the writer does not have yet
 };
 
-ResultStream::ResultStream(std::filesystem::path dir, std::vector<RowFormat> formats)
+ResultStream::ResultStream(std::filesystem::path dir, const std::vector<RowFormat>& formats)
     : ResultStream(std::move(dir), formats, Extents(formats.size())) {}
 
 ResultStream::ResultStream(std::filesystem::path dir, std::vector<RowFormat> formats, const Extents& extents)

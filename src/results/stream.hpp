@@ -25,7 +25,7 @@ class ResultStream {
   using Extents = std::vector<Extent>;
 
   /// Makes the files in place of earlier ones.
-  ResultStream(std::filesystem::path dir, std::vector<RowFormat> formats);
+  ResultStream(std::filesystem::path dir, const std::vector<RowFormat>& formats);
   /// Goes on in files that hold at least so much; what they hold beyond is cut off.
   /// @throws UserError where one is missing, shorter, or another; StateError where there are others
   ResultStream(std::filesystem::path dir, std::vector<RowFormat> formats, const Extents& extents);
