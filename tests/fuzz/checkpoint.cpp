@@ -17,6 +17,8 @@
 #include "interface/friction/velocity_weakening.hpp"
 #include "results/stream.hpp"
 #include "run/run.hpp"
+#include "setup/event.hpp"
+#include "setup/event_loads.hpp"
 
 using namespace slipfront;
 using problem::make_problem;
