@@ -64,7 +64,9 @@ inline V root_between(const F& f, V a, V f_a, V b, V f_b, V nothing) {
     const V other = select(passed, a, b), f_other = select(passed, f_a, f_b);
     a = select(goes_on, x, a), f_a = select(goes_on, f_x, f_a);
     b = select(goes_on, other, b), f_b = select(goes_on, f_other, f_b);
-    const auto over = [](V x, V y) { return x / select(y == 0, V{} + 1, y); };  // it counts where y is not 0
+    const auto over = [](V of, V by) {
+      return of / select(by == 0, V{} + 1, by);
+    };  // counts where by is not 0
     const V xi = over(a - b, c - b), phi = over(f_a - f_b, f_c - f_b);
     const Mask<V> is_smooth = c != b && f_c != f_b && phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
     share = select(is_smooth,
