@@ -372,8 +372,8 @@ Diagnostics notes_of_case(const Problem& problem, const RuptureOutlook& rupture,
   return notes;
 }
 
-Diagnostics notes_of_case(const Problem& problem) {
-  require_memory_fits(problem);
+Diagnostics notes_of_case(const Problem& problem, const Processes& processes) {
+  require_memory_fits(problem, processes);
   return notes_of_case(problem, rupture_outlook(problem, setup::check(problem)),
                        estimated_size(problem).step_s);
 }

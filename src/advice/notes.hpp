@@ -7,6 +7,7 @@
 #include "base/diagnostic.hpp"
 #include "base/error.hpp"
 #include "problem/problem.hpp"
+#include "processes/processes.hpp"
 
 namespace slipfront::advice {
 
@@ -15,8 +16,9 @@ namespace slipfront::advice {
 /// @param step_s  of the run, or as estimated_size gives it
 Diagnostics notes_of_case(const Problem& problem, const RuptureOutlook& rupture, double step_s);
 
-/// Those before the statics are solved. @throws UserError as require_memory_fits and setup::check
-Diagnostics notes_of_case(const Problem& problem);
+/// Those before the statics are solved. @param processes  the ranks that share the run
+/// @throws UserError as require_memory_fits and setup::check
+Diagnostics notes_of_case(const Problem& problem, const Processes& processes = one_process());
 
 /// Why a sequence under a law with a state, whose run needs none, has no static state to predict from.
 std::string no_static_state(const UserError& error);

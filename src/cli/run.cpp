@@ -254,7 +254,7 @@ void run_case(const CaseArguments& arguments, RunArguments& options) {
     });
   if (given && arguments.strict)
     arguments.require_none_refused(
-        given->file.placing_errors([&] { return advice::notes_of_case(given->problem); }));
+        given->file.placing_errors([&] { return advice::notes_of_case(given->problem, processes); }));
   catch_interrupts();
   try {
     auto hooks = cli::hooks(options.quiet);

@@ -278,7 +278,8 @@ class Stepper {
   void require_ready() const {
     started();
     if (state_ == State::in_use)
-      throw UserError("the stepper is advancing already, in its law or in another thread");
+      throw UserError(
+          "the stepper is already advancing: do not call it from its friction law or from another thread");
     if (state_ == State::failed) throw UserError("the stepper has failed; make another one");
   }
   void begin(const statics::Equilibrium& state, double top_speed_m_per_s, motion::Loads loads) {

@@ -65,7 +65,7 @@ class RowSink {
   virtual ~RowSink() = default;
   /// Takes rows, or the next piece of one.
   virtual void put(std::vector<double> values) = 0;
-  /// Waits until there is room for a piece of so many bytes, which is yet to be made.
+  /// Waits until the queue has room for so many more bytes; called before a large piece is computed.
   virtual void wait_for_room(std::size_t /*bytes*/) {}
 };
 

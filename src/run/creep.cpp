@@ -215,8 +215,7 @@ bool Creep::slip_to_next(const Rows& rows) {
 }
 
 void Creep::serialize(StateArchive& archive) {
-  archive(slow_);
-  archive(part_end_s_);
+  archive(slow_, part_end_s_);
   if (archive.is_loading()) rows_.emplace(slow_, sample_.initial.tributary_m);
   archive(*rows_);
 }

@@ -94,8 +94,8 @@ class Creep {
 
  private:
   void begin();
-  /// Lets the edge move to where the path is at the end of the part that begins. @param shear_m  as the
-  /// sample's
+  /// Sets the edge's speed to that which reaches the path at the end of the part that begins.
+  /// @param shear_m  beyond rest.moved_m
   void begin_part(double time_s, double shear_m);
   /// @param u_x_per_shear  see statics::Statics::slid_to
   statics::Equilibrium slid_to(std::vector<double> u_x_per_shear) const;

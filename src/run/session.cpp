@@ -224,7 +224,7 @@ void Session::begin(Checkpoints::Checkpoint* kept) {
   advice::require_memory_fits(problem_, processes_);
   write_status({"running", "before the event", head_.sessions});
   if (problem_.is_sequence()) {
-    notes_of_case_ = advice::notes_of_case(problem_);
+    notes_of_case_ = advice::notes_of_case(problem_, processes_);
     sequence_.emplace(
         problem_, [this](std::int64_t, std::int64_t) { return look_at_statics(); }, processes_);
   }

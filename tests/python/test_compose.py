@@ -291,6 +291,8 @@ def test_other_threads_go_on_and_ctrl_c_ends_an_advance():
     with pytest.raises(KeyboardInterrupt, match="interrupted after step"):
         composed.advance(10**12)
     other.join()
-    assert told == ["the stepper is advancing already, in its law or in another thread"]
+    assert told == [
+        "the stepper is already advancing: do not call it from its friction law or from another thread"
+    ]
     step = composed.step
     assert composed.advance(2) == 2 and composed.step == step + 2
