@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from slipfront.batch import event_of_history as event_of_history
     from slipfront.contour import ContourIntegral as ContourIntegral
     from slipfront.contour import contour_integral as contour_integral
+    from slipfront.cutting import read_recorders as read_recorders
+    from slipfront.cutting import write_records as write_records
     from slipfront.errors import BlowUpError as BlowUpError
     from slipfront.errors import CaseError as CaseError
     from slipfront.errors import Error as Error
@@ -54,6 +56,9 @@ if TYPE_CHECKING:
     from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
     from slipfront.other_codes import read_sem2dpack as read_sem2dpack
     from slipfront.other_codes import read_uguca as read_uguca
+    from slipfront.records import Channel as Channel
+    from slipfront.records import Event as Event
+    from slipfront.records import read_records as read_records
     from slipfront.running import case as case
     from slipfront.running import info as info
     from slipfront.running import resume as resume
@@ -76,6 +81,7 @@ _NAMES = {
     ),
     "batch": "Batch event_of_history",
     "contour": "ContourIntegral contour_integral",
+    "cutting": "read_recorders write_records",
     "errors": "BlowUpError CaseError Error WriteError",
     "files": "DataError",
     "fracture": "fracture_of_history predict_fronts",
@@ -88,6 +94,7 @@ _NAMES = {
     "opened": "OpenRun",
     "opened_sequence": "OpenSequence open",
     "other_codes": "read_seissol_fault_receivers read_sem2dpack read_uguca",
+    "records": "Channel Event read_records",
     "running": "case info resume run run_with_law stable_step_s version wave_speeds well_posedness",
     "tip_fit": "TipFit fit_tip fit_tips tip_field",
 }

@@ -239,22 +239,26 @@ def read_table(file: Path, by_hand: bool = False, growing: bool = False, separat
 
 
 @contextmanager
-def open_hdf5(file: Path) -> Iterator[h5py.File]:
-    """An HDF5 file; what the library says of a damaged one, in whatever exception, becomes a DataError."""
-    with open_file(file):
-        pass
+def reading(file: Path, what: str) -> Iterator[None]:
+    """What a library says of a damaged file, in whatever exception, becomes a DataError."""
     try:
-        with h5py.File(file, "r") as hdf5:
-            yield hdf5
+        yield
     except DataError:
         raise
     except MemoryError:
         raise DataError(f"{file}: does not fit into memory") from None
-    except (
-        Exception
-    ) as error:  # h5py raises what it happens to: OSError, RuntimeError, KeyError, ValueError, ...
-        kind = "damaged, or not an HDF5 file"
-        raise DataError(f"{file}: {kind}: {one_line(str(error))}") from None
+    except Exception as error:  # libraries raise what they happen to: OSError, KeyError, ValueError, ...
+        told = one_line(str(error)) or type(error).__name__
+        raise DataError(f"{file}: damaged, or not {what}: {told}") from None
+
+
+@contextmanager
+def open_hdf5(file: Path) -> Iterator[h5py.File]:
+    """An HDF5 file, damaged ones refused."""
+    with open_file(file):
+        pass
+    with reading(file, "an HDF5 file"), h5py.File(file, "r") as hdf5:
+        yield hdf5
 
 
 def dataset(group: h5py.Group, name: str, dimensions: int) -> h5py.Dataset:
@@ -263,7 +267,7 @@ def dataset(group: h5py.Group, name: str, dimensions: int) -> h5py.Dataset:
     found = group.get(name)
     if not isinstance(found, h5py.Dataset):
         raise DataError(f"{file}: no data set '{name}' in '{group.name}'")
-    if found.dtype.kind not in "fiu" or found.ndim != dimensions:
+    if found.dtype.kind not in "fiub" or found.ndim != dimensions:
         raise DataError(f"{file}: '{name}' is not an array of numbers with {dimensions} dimensions")
     source = group.file.get(ROWS) if found.is_virtual else found
     stored = source.id.get_storage_size() if isinstance(source, h5py.Dataset) else 0
