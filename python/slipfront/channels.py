@@ -182,6 +182,8 @@ def values_of(where: str, table: Mapping[str, Any]) -> dict[str, Any]:
             made[key] = in_si(made[key], factor)
     if "time" in made and "sample_rate_Hz" in made:
         raise DataError(f"{where}: has both a column of times and sample_rate_Hz: leave one out")
+    if "first_time_s" in made and "sample_rate_Hz" not in made:
+        raise DataError(f"{where}: first_time_s is of times by sample_rate_Hz: give that, too")
     return made
 
 

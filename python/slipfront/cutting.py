@@ -20,7 +20,7 @@ from slipfront.errors import CaseError, one_line
 from slipfront.files import DataError
 from slipfront.folder import sha256
 from slipfront.gauges import flat_tops
-from slipfront.given import flag, in_order, number, path, text
+from slipfront.given import flag, in_order, number, path, text, whole
 from slipfront.recorders import Recording, Series, open_recording, plain_unit, times_of
 from slipfront.records import Channel, Event, Writer, require_own
 
@@ -29,6 +29,7 @@ SHARE = 0.1  # of the range of a force, by which it drops
 HYSTERESIS = 0.1  # of the range of a trigger, by which it must fall below its level before it rises again
 LEAST_OVER_NOISE = 5.0  # a drop of the force over the noise of its means
 LEAST_OF_LINE = 3  # samples
+OFF_RATE = 1e-3  # of a rate by the table, from that by the file
 OFF_GRID = 1e-3  # of a sample, by which ends of a window may be off by rounding
 
 
@@ -156,8 +157,8 @@ def drops(where: str, time_s: np.ndarray, force: np.ndarray, share: float, withi
     noise = 1.4826 * float(np.median(np.abs(np.diff(force)))) / np.sqrt(width)
     if least <= LEAST_OVER_NOISE * noise:
         raise DataError(
-            f"{where}: a drop by {share:g} of its range, {least:.3g} N, is within the noise, {noise:.2g} N in "
-            "means over a quarter of within_s; give a larger share or within_s"
+            f"{where}: a drop by {share:g} of its range, {least:.3g} N, is within the noise, {noise:.2g} N "
+            "in means over a quarter of within_s; give a larger share or within_s"
         )
     over = np.flatnonzero(means[:-n] - means[n:] >= least)
     found = []
@@ -245,6 +246,11 @@ class Clocks:
         if wiring.time:
             key: Any = (recording.file, wiring.time, wiring.time_unit)
         elif wiring.sample_rate_Hz is not None:
+            if abs(wiring.sample_rate_Hz * column.step_s - 1) > OFF_RATE:
+                raise DataError(
+                    f"{wiring.where}: sample_rate_Hz is {wiring.sample_rate_Hz:g}, by the file it is "
+                    f"{1 / column.step_s:.9g}: leave it out, or correct it"
+                )
             key = (n, wiring.sample_rate_Hz, wiring.first_time_s)
         elif column.time:
             key = (recording.file, column.time, "")
@@ -287,6 +293,7 @@ def line_through(time_s: np.ndarray, values: np.ndarray) -> tuple[float, float, 
     return mean, noise, slope, noise / float(np.sqrt(squares))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of absurd numbers
 def cut(part: Part, window: Window, cutting: Cutting) -> Channel | None:
     """A channel of an event; None where it has nothing to show there."""
     wiring, kind = part.wiring, KINDS[part.wiring.kind]
@@ -426,6 +433,8 @@ def arguments(
         if options.get(name) is not None:
             text(options[name], name)
     cutting = Cutting(**options)
+    if header_line is not None:
+        whole(header_line, "header_line", least=0)
     return [path(f, "files") for f in listed], path(channels, "channels"), cutting, header_line
 
 

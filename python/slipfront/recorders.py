@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import csv
 import io
+import logging
+import math
 import os
 import re
 import sys
@@ -22,6 +24,7 @@ import h5py
 import numpy as np
 import pandas as pd
 
+from slipfront.channels import FORCES, VOLTAGES
 from slipfront.files import (
     LARGEST_PACKING,
     DataError,
@@ -31,16 +34,24 @@ from slipfront.files import (
     read_bytes,
     reading,
 )
-from slipfront.onsets import NEVER, TIMES, in_si, name_and_unit
+from slipfront.gauges import STRAINS
+from slipfront.onsets import LENGTHS, NEVER, PRESSURES, TIMES, WORDS, in_si, name_and_unit
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 AT_512 = 512  # where that of a .mat file of version 7.3 stands
+#: That are read, of HDF5: a damaged one of others can hold the library up.
+ATTRIBUTES = (
+    "NAME", "MATLAB_class", "MATLAB_empty", "units", "_FillValue", "missing_value", "scale_factor",
+    "add_offset",
+)  # fmt: skip
 #: What arrays hold besides numbers, by the kind of their type.
 OTHERS = {
     "c": "complex numbers", "O": "references or objects", "S": "texts", "U": "texts", "T": "texts",
     "V": "records of several fields", "M": "dates", "m": "time spans",
 }  # fmt: skip
 FORMS_READ = "MATLAB (.mat), HDF5, NetCDF, NPZ, TDMS and tables of text"
+UNITS = {*TIMES, *VOLTAGES, *LENGTHS, *FORCES, *PRESSURES, *STRAINS} - {""}
+LESS = "less than it claims: cut off or damaged"
 HEAD_LINES = 500  # of a table of text, among which its numbers begin
 SEPARATORS = (";", "\t", ",", "")  # of cells; without any of the others, blanks
 
@@ -99,7 +110,6 @@ class Recording:
     file: Path
     columns: Mapping[str, Column]
     numbered: bool = False  # by their order, from 1, where a name is a number
-    matlab: bool = False
 
     def find(self, name: str) -> Column | None:
         """By its name, `/` and `.` alike between groups, without the unit where one column has that name
@@ -108,7 +118,7 @@ class Recording:
         for form in (name, plain, plain.replace(".", "/"), plain.replace("/", ".")):
             if form in self.columns:
                 return self.columns[form]
-        bare = [c for c in self.columns.values() if name_and_unit(c.name)[0] == name.lower()]
+        bare = [c for c in self.columns.values() if named(c.name) == (name.lower(), True)]
         if len(bare) == 1:
             return bare[0]
         k = int(name) if self.numbered and re.fullmatch(r"\d{1,6}", name) else 0
@@ -129,8 +139,10 @@ class Recording:
             has = f"did you mean '{near[0]}'" if near else "it has " + listed(list(self.columns))
             raise DataError(f"{of} is no column; {has}")
         if column.other:
-            raise DataError(f"{of} holds {column.other}: name an array of real numbers")
+            raise DataError(f"{of} holds {column.other}")
         shape = column.shape
+        if 0 in shape:
+            raise DataError(f"{of} is empty")
         at: Index = tuple(slice(None) for _ in shape)
         if index is not None:
             runs, k = index
@@ -144,11 +156,15 @@ class Recording:
                 f"{of} is an array of {by(shape)}: name a row or column of two dimensions, as "
                 f"'{one_line(name)}[:,0]'"
             )
-        if 0 in shape:
-            raise DataError(f"{of} is empty")
         axis = long[0] if long else (0 if shape else None)
         at = tuple(slice(None) if k == axis else 0 for k in range(len(shape)))
         return Series(self.file, column, 1 if axis is None else shape[axis], axis, at)
+
+
+def named(column: str) -> tuple[str, bool]:
+    """The name in `CH1 (V)`, and whether a unit follows it."""
+    name, unit = name_and_unit(column)
+    return (name, True) if unit in UNITS else (column.strip().lower(), False)
 
 
 def split_index(name: str) -> tuple[str, tuple[int, int] | None]:
@@ -177,7 +193,8 @@ def word(value: Any) -> str:
 def plain_unit(text: str) -> str:
     """Of `[s]`, `seconds`, `seconds since 1970-01-01`; as it is where it is another's."""
     bare = text.partition(" since ")[0].strip(" ()[]")
-    return name_and_unit(f"of ({bare})")[1] or bare
+    bare = bare.replace("µ", "u").replace("μ", "u").replace("%", "percent")
+    return WORDS.get(bare.lower(), bare)
 
 
 def unpacked(values: np.ndarray, attributes: Mapping[str, Any]) -> np.ndarray:
@@ -193,12 +210,28 @@ def unpacked(values: np.ndarray, attributes: Mapping[str, Any]) -> np.ndarray:
     return np.where(missing, np.nan, values * scale + offset)
 
 
-def require_room(file: Path, name: str, n_values: int, n_stored: int) -> None:
-    """Refuses an array that no file of this size unpacks to, or that memory does not hold."""
+def beyond(shape: tuple[int, ...], n_stored: int) -> str:
+    """What is told of an array that no file of so many bytes unpacks to, or that memory does not hold."""
+    n_values = math.prod(shape)
     if n_values > LARGEST_PACKING * n_stored:
-        raise DataError(f"{file}: '{one_line(name)}' is larger than the file can hold: cut off or damaged")
-    if 8 * n_values > os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"):
-        raise DataError(f"{file}: '{one_line(name)}' does not fit into memory")
+        return LESS
+    fits = 8 * n_values <= os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return "" if fits else "more than fits into memory"
+
+
+def unstored(found: h5py.Dataset, attributes: Mapping[str, Any]) -> str:
+    """What is told of a data set that is not all in the file; parts never written would be read as zeros."""
+    if found.external:
+        return "values of other files: copy them into one"
+    try:
+        dataset(found.file, found.name, found.ndim)
+    except DataError:
+        return LESS
+    if found.chunks and "_FillValue" not in attributes:
+        chunks = (-(-n // of) for n, of in zip(found.shape, found.chunks, strict=True))
+        if found.id.get_num_chunks() < math.prod(chunks):
+            return LESS
+    return beyond(found.shape, found.id.get_storage_size())
 
 
 @contextmanager
@@ -207,12 +240,11 @@ def read_hdf5(file: Path, _: int | None) -> Iterator[Recording]:
     read: all that is, lies in the file."""
     with h5py.File(file, "r") as hdf5:
         columns: dict[str, Column] = {}
-        is_matlab = file_head(file).startswith(b"MATLAB")
 
         def take(name: str, found: Any) -> None:
             if not isinstance(found, h5py.Dataset):
                 return
-            attributes = dict(found.attrs)
+            attributes = {name: found.attrs[name] for name in ATTRIBUTES if name in found.attrs}
             if word(attributes.get("NAME", "")).startswith("This is a netCDF dimension but not"):
                 return
             of_matlab = word(attributes.get("MATLAB_class", ""))
@@ -222,6 +254,7 @@ def read_hdf5(file: Path, _: int | None) -> Iterator[Recording]:
             shape = found.shape
             if shape is None or "MATLAB_empty" in attributes:
                 shape, other = (0,), "nothing"
+            other = other or unstored(found, attributes)
             time = ""
             if found.ndim and len(found.dims[0]):
                 scale = found.dims[0][0]
@@ -230,20 +263,16 @@ def read_hdf5(file: Path, _: int | None) -> Iterator[Recording]:
             turned = bool(of_matlab) and len(shape) > 1
 
             def read(index: Index) -> np.ndarray:
-                of = dataset(hdf5, name, len(shape))
-                if of.external:
-                    raise DataError(f"{file}: '{one_line(name)}' lies in other files: copy it into one")
-                values = of[index[::-1] if turned else index]
+                values = hdf5[name][index[::-1] if turned else index]
                 return unpacked(np.asarray(values), attributes)
 
             unit = word(attributes.get("units", ""))
             shown = shape[::-1] if turned else shape
-            columns[name] = Column(name, shown, read, other, unit, time)
+            if not name.startswith("#refs#"):  # of MATLAB's own
+                columns[name] = Column(name, shown, read, other, unit, time)
 
         hdf5.visititems(take)
-        yield Recording(
-            file, {n: c for n, c in columns.items() if not n.startswith("#refs#")}, matlab=is_matlab
-        )
+        yield Recording(file, columns)
 
 
 @contextmanager
@@ -298,10 +327,9 @@ def read_mat5(file: Path, _: int | None) -> Iterator[Recording]:
             name = ".".join(path)
 
             def read(index: Index) -> np.ndarray:
-                require_room(file, name, int(np.prod(shape, dtype=float)), size)
                 return np.asarray(of_path(path)[index])
 
-            columns[name] = Column(name, shape, read, other)
+            columns[name] = Column(name, shape, read, other or beyond(shape, size))
 
         def take_fields(path: list[str], found: Any) -> None:
             for part in found.dtype.names or ():
@@ -318,7 +346,7 @@ def read_mat5(file: Path, _: int | None) -> Iterator[Recording]:
             else:
                 numbers = re.fullmatch(r"double|single|u?int\d+|logical", kind)
                 take([name], tuple(shape), "" if numbers else f"no array of numbers but a {kind}")
-        yield Recording(file, columns, matlab=True)
+        yield Recording(file, columns)
 
 
 @contextmanager
@@ -339,16 +367,21 @@ def read_npz(file: Path, _: int | None) -> Iterator[Recording]:
                 version = np.lib.format.read_magic(member)
                 header = np.lib.format.read_array_header_1_0 if version == (1, 0) else None
                 shape, _, dtype = (header or np.lib.format.read_array_header_2_0)(member)
-            n_values = int(np.prod(shape, dtype=float))
-            # An array of zeros packs well: its header may claim no more than the archive's own list does.
-            n_stored = info.compress_size if n_values * dtype.itemsize <= info.file_size else 0
 
-            def read(index: Index, name: str = name, n: tuple[int, int] = (n_values, n_stored)) -> np.ndarray:
-                require_room(file, name, *n)
+            def read(index: Index, name: str = name) -> np.ndarray:
                 return loaded(name)[index]
 
-            columns[name] = Column(name, shape, read, OTHERS.get(dtype.kind, ""))
+            claims = math.prod(shape) * dtype.itemsize > info.file_size
+            other = OTHERS.get(dtype.kind, "") or (LESS if claims else beyond(shape, info.compress_size))
+            columns[name] = Column(name, shape, read, other)
         yield Recording(file, columns)
+
+
+class Refusing(logging.Handler):
+    """What npTDMS prints of a damaged file and goes on is refused."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        raise ValueError(record.getMessage()[:100])
 
 
 @contextmanager
@@ -356,11 +389,15 @@ def read_tdms(file: Path, _: int | None) -> Iterator[Recording]:
     """TDMS of LabVIEW. Channels that begin at different wf_start_time are on one clock, that of the first."""
     try:
         from nptdms import TdmsFile
+        from nptdms.log import log_manager
     except ImportError:
         raise DataError(
             f"{file}: TDMS needs the Python package npTDMS: install it with '{sys.executable} -m pip install "
             "npTDMS'"
         ) from None
+    log_manager.console_handler.setLevel(logging.CRITICAL)
+    for log in log_manager.loggers.values():
+        log.handlers[1:] = [REFUSING]
     # Of a stream: a file beside it, FILE_index, is not asked.
     with open_file(file) as stream, TdmsFile.open(stream) as held:
         size = os.fstat(stream.fileno()).st_size
@@ -369,10 +406,8 @@ def read_tdms(file: Path, _: int | None) -> Iterator[Recording]:
         columns = {}
         for name, channel in channels.items():
 
-            def read(index: Index, channel: Any = channel, name: str = name) -> np.ndarray:
+            def read(index: Index, channel: Any = channel) -> np.ndarray:
                 (part,) = index
-                if len(channel) > 8 * size:
-                    raise DataError(f"{file}: '{one_line(name)}' is larger than the file: damaged")
                 first, end, _ = part.indices(len(channel)) if isinstance(part, slice) else (part, part + 1, 1)
                 return np.asarray(channel.read_data(first, end - first))
 
@@ -380,15 +415,17 @@ def read_tdms(file: Path, _: int | None) -> Iterator[Recording]:
             first_s = float(has.get("wf_start_offset", 0.0))
             if START in has:
                 first_s += float((has[START] - min(starts)) / np.timedelta64(1, "ns")) * 1e-9
-            kind = getattr(channel.dtype, "kind", "O")
+            other = OTHERS.get(getattr(channel.dtype, "kind", "O"), "")
+            other = other or (LESS if len(channel) > 8 * size else "")  # digital lines are bits
             columns[name] = Column(
-                name, (len(channel),), read, OTHERS.get(kind, ""), word(has.get("unit_string", "")),
+                name, (len(channel),), read, other, word(has.get("unit_string", "")),
                 step_s=float(has.get("wf_increment", np.nan)), first_s=first_s,
             )  # fmt: skip
         yield Recording(file, columns)
 
 
 START = "wf_start_time"
+REFUSING = Refusing()
 
 
 def cells_of(line: str, separator: str) -> list[str]:
@@ -530,7 +567,8 @@ def read_text_table(file: Path, header_line: int | None) -> Iterator[Recording]:
                 raise DataError(f"{file}:{line}: '{shown}' in column '{one_line(label)}' is not a number")
             return values.to_numpy()[index]
 
-        unit = of.units[k] if k < len(of.units) else name_and_unit(name)[1]
+        own = name_and_unit(name)[1] if named(name)[1] else ""
+        unit = of.units[k] if k < len(of.units) else own
         columns[label] = Column(label, (len(table),), read, unit=unit.strip(" ()[]"))
     yield Recording(file, columns, numbered=True)
 
