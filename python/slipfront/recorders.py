@@ -463,6 +463,14 @@ class Layout:
     units: list[str]
 
 
+def header_cells(line: str, separator: str, n: int) -> list[str]:
+    """Of a line above the numbers; names between blanks may hold single ones."""
+    bare = line.lstrip("#%/! " if separator else "#%/! \t")
+    cells = cells_of(bare, separator)
+    wide = [] if separator or len(cells) == n else re.split(r"\s{2,}", bare.strip())
+    return wide if len(wide) == n else cells
+
+
 def layout_of(file: Path, lines: list[str], header_line: int | None) -> Layout:
     """header_line: from 1; 0: there is none; None: the line above the numbers that has as many cells."""
     for k in range(header_line or 0, len(lines)):
@@ -471,10 +479,7 @@ def layout_of(file: Path, lines: list[str], header_line: int | None) -> Layout:
             after = next((line for line in lines[k + 1 :] if line.strip()), lines[k])
             if n and numbers_in(after, separator)[0] == n:
                 decimal = comma or numbers_in(after, separator)[1]
-                above = [
-                    line.lstrip("#%/! \t") if not separator else line.lstrip("#%/! ") for line in lines[:k]
-                ]
-                cells = [cells_of(line, separator) for line in above]
+                cells = [header_cells(line, separator, n) for line in lines[:k]]
                 return Layout(k, separator, n, decimal, *header_of(file, cells, n, header_line))
     raise DataError(
         f"{file}: no two lines of numbers among the first {len(lines)}; forms read are {FORMS_READ}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import sys
 import zipfile
 
@@ -13,10 +14,12 @@ import numpy as np
 import pytest
 import slipfront
 import xarray as xr
+from common import ROOT
 from nptdms import ChannelObject, TdmsWriter
 from package_cases import refused
 from scipy.io import netcdf_file, savemat
 from slipfront import channels, records_command
+from slipfront.records import Channel
 
 N, RATE_HZ, SLOW_HZ = 20_000, 1e6, 20e3
 AT_S = (5e-3, 10e-3, 15e-3)  # of the events
@@ -576,6 +579,25 @@ def test_traces_are_drawn(experiment, tmp_path, capsys):
     assert picture.read_bytes().startswith(b"\x89PNG") and f"figure: {picture}" in capsys.readouterr().out
 
 
+def test_the_page_has_all_keys_and_kinds_and_its_example_runs(tmp_path, recorded):
+    page = (ROOT / "docs/records.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`(\w+)`", page))
+    assert set(channels.KEYS) <= named and set(channels.KINDS) <= named
+    assert {
+        name for name in Channel.__dataclass_fields__ if name not in ("name", "time_s", "values")
+    } <= named
+    own = tmp_path / "channels.toml"
+    own.write_text(re.search(r"^```toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)[1])
+    with h5py.File(tmp_path / "daq.h5", "w") as made:
+        made["/daq/t"], made["/daq/ch0"], made["/daq/ch7"] = (
+            recorded[name] for name in ("t", "SG_45", "trig")
+        )
+    written(tmp_path / "load.csv", [recorded["F"]], separator=",", header=["shear (V)"])
+    found = slipfront.read_recorders([tmp_path / "daq.h5", tmp_path / "load.csv"], own, **WINDOW)
+    assert [event.source for event in found] == ["daq.h5, load.csv"] * 3
+    assert found[0].channels["F_S"].values.max() == pytest.approx(2000, abs=50)  # before the drop
+
+
 # What is refused
 
 
@@ -810,6 +832,7 @@ def test_texts_of_several_hands(tmp_path):
         ("% made by hand\n% t_s  A\n 0  1.5\n 1  nan\n 2  3.5\n", None),
         ("a,b\nt_s,A\n0,1.5\n1,-\n2,3.5\n", 2),
         ("t,A\ns,mm\n0,1.5\n1,\n2,3.5\n", None),
+        ("t (s)   A (mm)\n0 1.5\n1 nan\n2 3.5\n", None),
     ):
         (tmp_path / "a.txt").write_bytes(text.encode())
         (event,) = slipfront.read_recorders(tmp_path / "a.txt", tmp_path / "c.csv", header_line=line)
