@@ -266,7 +266,7 @@ class Clocks:
         time_s = self.known[key]
         if len(time_s) != n:
             raise DataError(f"{wiring.where}: {n} values, but {len(time_s)} times")
-        moved = (key, wiring.clock_offset_s)
+        moved = (key, wiring.clock_offset_s) if wiring.clock_offset_s else key
         if moved not in self.known:
             self.known[moved] = time_s + wiring.clock_offset_s
         return self.known[moved]

@@ -17,6 +17,7 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -436,19 +437,22 @@ def cells_of(line: str, separator: str) -> list[str]:
         return []
 
 
-def numbers_in(line: str, separator: str) -> tuple[int, bool]:
-    """How many cells of numbers a line has, and whether these have decimal commas; 0 where one is another."""
-    if separator not in line:
-        return 0, False
-    cells = [c for c in cells_of(line, separator) if c.lower() not in NEVER or c.lower().endswith("inf")]
-    for comma in (False, True) if separator != "," else (False,):
-        try:
-            for cell in cells:
-                float(cell.replace(",", ".", 1) if comma else cell)
-        except ValueError:
-            continue
-        return (len(cells_of(line, separator)) if cells else 0), comma
-    return 0, False
+def numbers_in(line: str, separator: str, texts: bool) -> tuple[int, bool]:
+    """How many cells a line has, and whether its numbers have decimal commas; 0 of a line without numbers,
+    or, unless columns of texts are among them, with others."""
+    cells = cells_of(line, separator) if separator in line else []
+    known = [c for c in cells if c.lower() not in NEVER or c.lower().endswith("inf")]
+    best, comma = max((sum(is_decimal(c, comma) for c in known), not comma) for comma in (False, True))
+    is_row = best > 0 if texts else 0 < best == len(known)
+    return (len(cells) if is_row else 0), not comma
+
+
+def is_decimal(cell: str, comma: bool) -> bool:
+    try:
+        float(cell.replace(",", ".", 1) if comma else cell)
+    except ValueError:
+        return False
+    return True
 
 
 @dataclass(frozen=True)
@@ -473,34 +477,40 @@ def header_cells(line: str, separator: str, n: int) -> list[str]:
 
 def layout_of(file: Path, lines: list[str], header_line: int | None) -> Layout:
     """header_line: from 1; 0: there is none; None: the line above the numbers that has as many cells."""
-    for k in range(header_line or 0, len(lines)):
+    for texts, k in product((False, True), range(header_line or 0, len(lines) - 1)):
+        rows = [line for line in lines[k:] if line.strip()][: None if texts else 2]
         for separator in SEPARATORS:
-            n, comma = numbers_in(lines[k], separator)
-            after = next((line for line in lines[k + 1 :] if line.strip()), lines[k])
-            if n and numbers_in(after, separator)[0] == n:
-                decimal = comma or numbers_in(after, separator)[1]
+            n = numbers_in(rows[0], separator, texts)[0] if len(rows) > 1 else 0
+            found = [numbers_in(line, separator, texts) for line in rows] if n else []
+            if n and all(count == n for count, _ in found):
                 cells = [header_cells(line, separator, n) for line in lines[:k]]
-                return Layout(k, separator, n, decimal, *header_of(file, cells, n, header_line))
+                decimal = any(comma for _, comma in found)
+                # Each line may end with a separator, the header without.
+                widths = {n, n - (not any(cells_of(line, separator)[-1] for line in rows))}
+                names, units = header_of(file, cells, widths, header_line)
+                return Layout(k, separator, n, decimal, names, units)
     raise DataError(
         f"{file}: no two lines of numbers among the first {len(lines)}; forms read are {FORMS_READ}"
     )
 
 
 def header_of(
-    file: Path, above: list[list[str]], n: int, header_line: int | None
+    file: Path, above: list[list[str]], widths: set[int], header_line: int | None
 ) -> tuple[list[str], list[str]]:
     """Names and units of the columns, by the cells of the lines above the numbers."""
     if header_line:
         names = above[header_line - 1] if header_line <= len(above) else []
-        if len(names) not in (n, n - 1):
-            raise DataError(f"{file}:{header_line}: the header has {len(names)} cells, the numbers have {n}")
+        if len(names) not in widths:
+            raise DataError(
+                f"{file}:{header_line}: the header has {len(names)} cells, the numbers have {max(widths)}"
+            )
         units = next((cells for cells in above[header_line:] if len(cells) == len(names)), [])
         return names, units
     rows = list(enumerate(above, start=1))
     while rows and not any(rows[-1][1]):
         rows.pop()
     block: list[tuple[int, list[str]]] = []
-    while header_line is None and rows and len(rows[-1][1]) in (n, n - 1) and any(rows[-1][1]):
+    while header_line is None and rows and len(rows[-1][1]) in widths and any(rows[-1][1]):
         block.insert(0, rows.pop())
     has_units = len(block) > 1 and any(plain_unit(cell) in TIMES for cell in block[-1][1])
     names_at = block[:-1] if has_units else block

@@ -832,6 +832,8 @@ def test_texts_of_several_hands(tmp_path):
         ("% made by hand\n% t_s  A\n 0  1.5\n 1  nan\n 2  3.5\n", None),
         ("a,b\nt_s,A\n0,1.5\n1,-\n2,3.5\n", 2),
         ("t,A\ns,mm\n0,1.5\n1,\n2,3.5\n", None),
+        ("Rate;5\nt_s;day;A\n0;1.1.2026;1,5\n1;1.1.2026;\n2;1.1.2026;3,5\n", None),
+        ("t_s;A\n0;1,5;\n1;;\n2;3,5;\n", None),
         ("t (s)   A (mm)\n0 1.5\n1 nan\n2 3.5\n", None),
     ):
         (tmp_path / "a.txt").write_bytes(text.encode())
