@@ -172,10 +172,10 @@ def drops(where: str, time_s: np.ndarray, force: np.ndarray, share: float, withi
 
 
 def level_of(part: Part, values: np.ndarray, given: float | None) -> float:
-    if given is not None:
-        return given
     if np.isnan(values).all() or np.nanmax(values) == np.nanmin(values):
         raise DataError(f"{part.wiring.where}: the trigger does not change")
+    if given is not None:
+        return given
     return float((np.nanmax(values) + np.nanmin(values)) / 2)
 
 
@@ -275,7 +275,10 @@ class Clocks:
 def even_times(n: int, rate_Hz: float, first_s: float) -> np.ndarray:
     """A rate that is whole but for rounding, as one over a step is, is whole."""
     whole = round(rate_Hz)
-    return first_s + np.arange(n) / (whole if abs(rate_Hz - whole) <= 1e-9 * rate_Hz else rate_Hz)
+    time_s = np.arange(n, dtype=float)
+    time_s /= whole if abs(rate_Hz - whole) <= 1e-9 * rate_Hz else rate_Hz
+    time_s += first_s
+    return time_s
 
 
 def line_through(time_s: np.ndarray, values: np.ndarray) -> tuple[float, float, float, float]:

@@ -664,6 +664,14 @@ def test_tables_that_are_refused(experiment, old, new, told):
     assert told in error
 
 
+@pytest.mark.parametrize("level", [None, 2.0])
+def test_a_trigger_without_values_is_refused(experiment, recorded, level):
+    (file,), channel_table = experiment()
+    np.savez(file, **{**recorded, "trig": np.full(N, np.nan)})
+    told = refused(lambda: slipfront.read_recorders(file, channel_table, **WINDOW, level=level))
+    assert "channel 'trig': the trigger does not change" in told
+
+
 def test_lines_of_a_csv_table_are_told(experiment, tmp_path):
     files, _ = experiment()
     own = tmp_path / "channels.csv"

@@ -47,6 +47,6 @@ def draw_records(events: Iterable[Event]) -> Drawing:
                 ax.plot(1e3 * time_s, factor * values, label=plain(channel.name), linewidth=0.5)
             if k == 0:
                 ax.set_ylabel(f"{plain(name)} ({unit})" if unit != "1" else plain(name))
-            if len(of) > 1 and k == 0:
-                ax.legend()
+            if len(of) > 1 and k == len(shown) - 1:
+                ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return Drawing("records", figure, "")
