@@ -409,7 +409,10 @@ def cuts(files: list[Path], table: Path, cutting: Cutting, header_line: int | No
                 parts = parts_of(live, experiment)
                 source = ", ".join(dict.fromkeys(r.file.name for r in experiment.values()))
                 windows += windows_of(parts, cutting, source, len(windows), notes)
-            if cutting.zero == (np.inf, -np.inf):
+            first, last = cutting.zero
+            if first < last:
+                notes.append(f"zero, noise and drift by {first:g} to {last:g} s since the event's time")
+            else:
                 notes.append("nothing subtracted, noise and drift not measured: no zero_s is given")
             yield Cuts(files, windows, notes, cutting)
         except MemoryError:

@@ -508,6 +508,7 @@ def test_the_file_holds_the_events_and_xarray_reads_it(experiment, events, tmp_p
     told = capsys.readouterr().out.splitlines()
     assert told[0].startswith("event 1: at 0.00499") and "5 channels, -1.999 ms to 999.5 us" in told[0]
     assert any(line.startswith("SG_90: 1e+06 Hz, noise 2e-07, drift up to 0.0005") for line in told)
+    assert "zero, noise and drift by -0.002 to -0.001 s since the event's time" in told
     assert "dead, left out: dead" in told and any("midway of its range" in line for line in told)
     found = slipfront.read_records(output)
     for event, same in zip(found, events, strict=True):
