@@ -379,10 +379,23 @@ def read_npz(file: Path, _: int | None) -> Iterator[Recording]:
 
 
 class Refusing(logging.Handler):
-    """What npTDMS prints of a damaged file and goes on is refused."""
-
     def emit(self, record: logging.LogRecord) -> None:
         raise ValueError(record.getMessage()[:100])
+
+
+@contextmanager
+def refusing_warnings(logs: Any) -> Iterator[None]:
+    """What npTDMS prints of a damaged file, and goes on, is refused meanwhile."""
+    level, refusing = logs.console_handler.level, Refusing()
+    logs.console_handler.setLevel(logging.CRITICAL)
+    for log in logs.loggers.values():
+        log.addHandler(refusing)
+    try:
+        yield
+    finally:
+        for log in logs.loggers.values():
+            log.removeHandler(refusing)
+        logs.console_handler.setLevel(level)
 
 
 @contextmanager
@@ -396,11 +409,8 @@ def read_tdms(file: Path, _: int | None) -> Iterator[Recording]:
             f"{file}: TDMS needs the Python package npTDMS: install it with '{sys.executable} -m pip install "
             "npTDMS'"
         ) from None
-    log_manager.console_handler.setLevel(logging.CRITICAL)
-    for log in log_manager.loggers.values():
-        log.handlers[1:] = [REFUSING]
     # Of a stream: a file beside it, FILE_index, is not asked.
-    with open_file(file) as stream, TdmsFile.open(stream) as held:
+    with refusing_warnings(log_manager), open_file(file) as stream, TdmsFile.open(stream) as held:
         size = os.fstat(stream.fileno()).st_size
         channels = {f"{group.name}/{c.name}": c for group in held.groups() for c in group.channels()}
         starts = [c.properties[START] for c in channels.values() if START in c.properties]
@@ -426,7 +436,6 @@ def read_tdms(file: Path, _: int | None) -> Iterator[Recording]:
 
 
 START = "wf_start_time"
-REFUSING = Refusing()
 
 
 def cells_of(line: str, separator: str) -> list[str]:
