@@ -17,6 +17,5 @@ NB_MODULE(_core, module) {
   slipfront::python::bind_fracture(module);
   slipfront::python::bind_passages(module);
   slipfront::python::bind_fits(module);
-  slipfront::python::bind_gauges(module);
   slipfront::python::bind_batch(module);
 }

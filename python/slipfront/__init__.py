@@ -69,9 +69,9 @@ if TYPE_CHECKING:
     from slipfront.running import wave_speeds as wave_speeds
     from slipfront.running import well_posedness as well_posedness
     from slipfront.tip_fit import TipFit as TipFit
+    from slipfront.tip_fit import fit_front as fit_front
     from slipfront.tip_fit import fit_tip as fit_tip
     from slipfront.tip_fit import fit_tips as fit_tips
-    from slipfront.tip_fit import tip_field as tip_field
 
 # The names of each module.
 _NAMES = {
@@ -96,7 +96,8 @@ _NAMES = {
     "other_codes": "read_seissol_fault_receivers read_sem2dpack read_uguca",
     "records": "Channel Event read_records",
     "running": "case info resume run run_with_law stable_step_s version wave_speeds well_posedness",
-    "tip_fit": "TipFit fit_tip fit_tips tip_field",
+    "near_tip": "tip_field",
+    "tip_fit": "TipFit fit_front fit_tip fit_tips",
 }
 _PLACES = {name: module for module, names in _NAMES.items() for name in names.split()}
 

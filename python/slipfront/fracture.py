@@ -190,7 +190,7 @@ def fracture_of_history(
             "history: no front's breakdown came to its end within it: it is too short, friction does not "
             "fall behind its fronts, or signs are others: t drives the slip, p is positive in compression"
         )
-    limit = _core.TipField(case, 0.0, 1).limiting_speed_m_per_s
+    limit = case.limiting_speed_m_per_s
     notes += beyond({"limiting_speed_m_per_s": limit}) + notes_on(
         float(np.median(np.diff(time_s))), {name: of[done] for name, of in found.items()}
     )

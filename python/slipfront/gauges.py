@@ -63,6 +63,7 @@ class Gauge:
     smoothing_s: float = 0.0  # standard deviation of the filter that the record has passed
     places_m: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     doubts: tuple[str, ...] = ()  # of the record; they follow each fit to it
+    bandwidth_Hz: float = np.inf  # of its amplifier, a low-pass of first order that lets 0.71 pass there
     #: First and last times of flat tops: the record was cut off there, before any filter.
     flat_s: tuple[tuple[float, float], ...] = field(init=False, repr=False)
 
@@ -72,6 +73,7 @@ class Gauge:
             number(getattr(self, name), f"{of}{name}")
         number(self.smoothing_s, f"{of}smoothing_s", least=0, finite=True)
         flag(self.is_strain, f"{of}is_strain")
+        number(self.bandwidth_Hz, f"{of}bandwidth_Hz", above=0)
         values = table(self.values, f"{of}values")
         if not values or any(weights(name) is None for name in values):
             raise CaseError(

@@ -19,7 +19,8 @@ from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
 from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, from_arms, gauges_of, read_gauges
 from slipfront.opened import OpenRun, open_run
-from slipfront.tip_fit import TipFit, bodies_of, fit_tips, limiting_speed_m_per_s
+from slipfront.near_tip import bodies_of
+from slipfront.tip_fit import TipFit, fit_front, fit_tips
 
 MARK = "# gauges by slipfront gauges\n"  # by it a file is known that may be replaced
 OF_FIT = (
@@ -183,7 +184,7 @@ def with_error(value: float, error: float) -> str:
 
 def with_fronts_of_run(fit: TipFit, run: OpenRun) -> TipFit:
     """The fit, with the run's fronts at its gauge: those too fast for the field; without a tip all."""
-    limit, fronts = limiting_speed_m_per_s(bodies_of(run)), run.fronts
+    limit, fronts = bodies_of(run).limit_m_per_s, run.fronts
     if fronts.sizes.get("point", 0) == 0:
         return fit
     height_m, off_m = abs(fit.y_m), np.abs(fronts["x_m"].to_numpy() - fit.x_m)

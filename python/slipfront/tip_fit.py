@@ -1,50 +1,59 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The steadily moving near-tip field of a front fitted to records of strain gauges. docs/gauges.md
+"""The near-tip field of a front fitted to records of strain gauges. docs/gauges.md
 
 K is positive where the body above slips to +x."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from copy import copy
 from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.integrate import cumulative_trapezoid
+from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
 from slipfront import _core
 from slipfront.errors import CaseError
-from slipfront.fracture import case_of_bodies
 from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth, some_gauges, weights
-from slipfront.given import array, flag, instance, number, shown, whole
+from slipfront.given import flag, instance, number, shown, whole
+from slipfront.near_tip import Bodies, TipField, bodies_of, require_field
 from slipfront.opened import OpenRun
 from slipfront.running import CaseLike
 from slipfront.units import beyond
 
 LARGE_RESIDUAL = 0.3  # of the record: it is not that of such a tip
 LARGE_ERROR = 0.5  # of Gamma
-LEAST_SIGNAL = 5  # of K, the tip's speed and time given, over its error: below, none has passed
+LEAST_SIGNAL = 5  # of the root of Gamma, tip and speed given, over its error: below, none has passed
 #: By so many joint errors, and by this share, the speed from gauge to gauge misses those fitted at both.
 SEVERAL, OTHER_SPEED = 3, 0.1
 LEAST_APART = 2.0  # heights that a front runs between two passages; a cohesive zone is nearer to its tip
-SHARES = (0.3, 0.6, 0.85, 0.95)  # of the limiting speed, from which a fit may start
+#: Of the range of speeds below c_S, and of that above, from which a fit may start.
+SHARES, FAST_SHARES = (0.3, 0.6, 0.85, 0.95), (0.2, 0.5, 0.8)
+START_ZONES = (0.0, 3.0, 12.0)  # lengths of the zone from which a fit may start, in heights
 STARTS = 3  # the best of them are refined
+#: Times of a start while the front runs the gauge's height, or a quarter of the zone; and most of them.
+FINE, MOST_EDGES = 8, 10**6
 LEAST_TIMES = 8
 #: Metals are elastic up to some 0.2 %, rock breaks at 0.2 to 0.5 %; glassy polymers alone of what is above
 #: this modulus bear more. Fronts change strains by 1e-5 to 1e-3: more, if these are numbers of percent.
 STIFF_STRAIN, STIFF_PA = 0.002, 1e9
 NORMAL_MEDIAN = 0.6745  # of the size of a normal variable, over its standard deviation
 ROUNDING = 1e-24  # of squares: a record that changes less is constant
-LEAST_GAIN, MOST_TRIALS = 1e-9, 60  # of least squares: share of the square that a step is to take off it
+# Of least squares: the share of the square that a step is to take off it; other tolerances end nothing.
+LEAST_GAIN, LEAST = 1e-7, 1e-15
 ROUNDS = 3  # of fits of several tips, each without the others
 LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
-#: Lag of a low-pass, in the time that the front takes for a height: where the search begins, and its end. It
-#: lasts for so many lags.
-LAG, LONGEST_LAG, LAGS = 0.3, 2.0, 6
-REACH = 5.0  # of a fit from the tip, in heights of the gauge
+#: Reach of a fit from the tip: so many heights of the gauge and cohesive zones.
+REACH_HEIGHTS, REACH_ZONES = 3.0, 2.0
+WINDOWS = 6  # of times, each for the zone that the one before has found
+#: Lengths of the zone that are tried, from this share of the height to this of the reach, one over the other.
+SHORTEST, LONGEST, RATIO = 0.1, 2.0, 1.6
+BESIDE = (0.86, 0.97, 1.03, 1.16)  # and beside the best one, over that, for its interval
+LAGS = 6  # of a low-pass of first order that count
 
 
 @dataclass(frozen=True)
@@ -55,15 +64,19 @@ class TipFit:
     gauge: str
     x_m: float
     y_m: float
+    together: int  # gauges that share V along x, Gamma and tau_p - tau_r with this one, itself among them
     direction: int  # of the front along x
     tip_s: float  # when the tip is below, or above, the gauge
     tip_error_s: float
     speed_m_per_s: float
     speed_error_m_per_s: float
-    K_Pa_sqrt_m: float
-    K_error_Pa_sqrt_m: float
+    K_Pa_sqrt_m: float  # NaN above c_S
     Gamma_J_per_m2: float
     Gamma_error_J_per_m2: float
+    cohesive_zone_m: float  # X_c at this gauge; 0: none is seen
+    zone_low_m: float  # from and to which the record says no more, by one error
+    zone_high_m: float
+    strength_drop_Pa: float  # tau_p - tau_r; inf without a zone
     offset: dict[str, float]  # by component: the level ahead of the tip that the field adds to
     step: dict[str, float]  # and by how much it changes until far behind
     residual: dict[str, float]  # rms of the residuals over that of the record in the fit, about its mean
@@ -78,14 +91,635 @@ class TipFit:
         return self.direction != 0
 
 
-def no_tip(gauge: Gauge, why: str, unchanged: str, doubts: list[str], limit: float) -> TipFit:
-    numbers = (np.nan,) * 8
-    change = largest_change(gauge, limit)
+@dataclass(frozen=True)
+class Settings:
+    """How a fit is done: see fit_tip."""
+
+    speed_m_per_s: float | None = None
+    direction: int | None = None
+    tip_s: float | None = None
+    zone: str = "linear"
+    zone_m: float | None = None
+    r_max_m: float | None = None
+    step: bool = True
+
+    def checked(self, bodies: Bodies, gauges: list[Gauge]) -> Settings:
+        flag(self.step, "step")
+        made = replace(self)
+        for name, least in {"speed_m_per_s": 0, "zone_m": 0, "r_max_m": 0, "tip_s": None}.items():
+            if getattr(self, name) is not None:
+                value = number(getattr(self, name), name, least=least, finite=True)
+                made = replace(made, **{name: value})
+        if self.direction not in (None, 1, -1):
+            raise CaseError(f"direction is {shown(self.direction)}; it must be 1, -1 or None")
+        for gauge in gauges:
+            if made.r_max_m is not None and not made.r_max_m > abs(gauge.y_m):
+                raise CaseError(
+                    f"gauge {gauge.name}: r_max_m is {made.r_max_m:g} m; it must be above the gauge's height, "
+                    f"{abs(gauge.y_m):g} m"
+                )
+        # At rest there is a field in any case; so a speed that is not given asks for no more than the zone's name.
+        require_field(bodies, made.speed_m_per_s or 0.0, made.zone_m, self.zone, "zone_m")
+        return made
+
+    def reach_m(self, height_m: float, zone_m: float) -> float:
+        return self.r_max_m or REACH_HEIGHTS * height_m + REACH_ZONES * zone_m
+
+
+class Trial(NamedTuple):
+    """How the model does at some parameters."""
+
+    square: float  # of the record about its means
+    left: float  # the share that the model leaves
+    slips_to_x: bool  # K is positive
+
+
+def ranked(trials: list[Trial]) -> list[int]:
+    """Those where the record changes much, from the one that leaves least. Without xy both directions leave
+    the same: then slip to +x comes first."""
+    most = max((t.square for t in trials), default=0.0)
+    changing = [k for k, t in enumerate(trials) if t.square > LEAST_SQUARE * most]
+    return sorted(changing, key=lambda k: (round(trials[k].left, 9), not trials[k].slips_to_x))
+
+
+def squares(of: list[np.ndarray]) -> float:
+    return sum(float((a**2).sum()) for a in of)
+
+
+class Record:
+    """A gauge as the model sees it."""
+
+    def __init__(self, gauge: Gauge) -> None:
+        self.gauge = gauge
+        self.height_m = abs(gauge.y_m)
+        self.parts = gauge.parts
+        self.weights = [weights(part) for part in self.parts]
+        self.places_m = [gauge.places_m.get(part, (gauge.x_m, gauge.y_m)) for part in self.parts]
+        self.data = np.array([gauge.values[part] for part in self.parts])
+        self.time_s = gauge.time_s
+        self.step_s = float(np.median(np.diff(self.time_s)))
+        self.leaked: np.ndarray | None = None  # integrals of the data, where a high-pass is sought
+        #: Weights of what the record has passed, and how many of them are of times to come.
+        self.kernel = gaussian(gauge.smoothing_s / self.step_s)
+        self.n_to_come = len(self.kernel) // 2
+        if gauge.bandwidth_Hz < np.inf:
+            lag = 1 / (2 * np.pi * gauge.bandwidth_Hz * self.step_s)  # in samples
+            past = np.exp(-np.arange(np.ceil(LAGS * lag)) / lag)
+            self.kernel = np.convolve(self.kernel, past / past.sum())
+
+    def inside(self, speed: float, tip_s: float, reach_m: float) -> np.ndarray:
+        """Indices of the times at which the gauge is in reach of the tip."""
+        far_s = np.sqrt(max(reach_m**2 - self.height_m**2, 0)) / speed
+        return np.arange(*np.searchsorted(self.time_s, [tip_s - far_s, tip_s + far_s]))
+
+    def shapes(
+        self, tip: TipField, speed: float, tip_s: float, at: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The field of each component or arm, and the step that goes with it, at these times. [parts, times]"""
+        time_s = self.time_s[at]
+        if len(self.kernel) > 1:
+            before = len(self.kernel) - 1 - self.n_to_come
+            time_s = self.time_s[0] + self.step_s * np.arange(at[0] - before, at[-1] + self.n_to_come + 1)
+        of = tip.strain if self.gauge.is_strain else tip.stress
+        at_place: dict[tuple[float, float], tuple[np.ndarray, np.ndarray]] = {}
+        for place in self.places_m:
+            if place not in at_place:
+                x_m = tip.direction * speed * (tip_s - time_s) + (place[0] - self.gauge.x_m)
+                # 0 ahead and 1 behind on the interface, and harmonic above it.
+                step = np.arctan2(abs(place[1]), tip.direction * x_m) / np.pi
+                at_place[place] = of(x_m, np.full_like(x_m, place[1])), step
+        rows = [w @ at_place[p][0] for w, p in zip(self.weights, self.places_m, strict=True)]
+        steps = [at_place[place][1] for place in self.places_m]
+        if len(self.kernel) > 1:
+            rows, steps = ([smooth(row, self.kernel)[at - at[0]] for row in of] for of in (rows, steps))
+        return np.array(rows), np.array(steps)
+
+    def levels(self, steps: np.ndarray | None, at: np.ndarray) -> np.ndarray:
+        """Columns of what each component has of its own: offset, and step. [parts x times, ...]"""
+        level = np.repeat(np.eye(len(self.parts)), len(at), axis=0)
+        columns = [level] if steps is None else [level, level * steps.reshape(-1, 1)]
+        if (
+            self.leaked is not None
+        ):  # dy/dt = dx/dt - 2 pi f y: what it takes is the integral of what it leaves
+            columns.append(self.leaked[:, at].reshape(-1, 1))
+        return np.hstack(columns)
+
+
+class Path(NamedTuple):
+    """When the tip passes the places x: times, s, and slownesses, s/m, are linear in the parameters, which are
+    times but for a last one, a slowness, where the speed is free."""
+
+    of_times: np.ndarray  # [places, parameters]
+    of_slowness: np.ndarray
+    slowness: float = 0.0  # that is given
+    is_free: bool = False
+
+
+def path_of(x_m: np.ndarray, direction: int, speed_m_per_s: float | None, one_speed: bool) -> Path:
+    """A given speed; a free one, of one place or of all; or that of the tips' times along x: of two places the
+    line through them, of three the parabola, of more the cubic spline."""
+    n = len(x_m)
+    if speed_m_per_s is not None:
+        return Path(np.eye(n), np.zeros((n, n)), slowness=1 / speed_m_per_s)
+    if n == 1 or one_speed:
+        along = direction * (x_m - x_m[0])
+        return Path(np.column_stack([np.ones(n), along]), np.tile([0.0, 1.0], (n, 1)), is_free=True)
+    each = np.eye(n)
+    if n > 3:
+        slopes = np.array([CubicSpline(x_m, row).derivative()(x_m) for row in each])
+    else:
+        slopes = np.array([np.gradient(row, x_m, edge_order=n - 1) for row in each])
+    return Path(each, direction * slopes.T)
+
+
+class Front:
+    """The model: gauges that the tip of one front passes, with one Gamma and one tau_p - tau_r."""
+
+    def __init__(
+        self, gauges: list[Gauge], bodies: Bodies, settings: Settings, direction: int, fast: bool,
+        one_speed: bool = False,
+    ) -> None:  # fmt: skip
+        self.records = [Record(gauge) for gauge in gauges]
+        self.bodies, self.settings, self.direction, self.fast = bodies, settings, direction, fast
+        self.x_m, self.place = np.unique([g.x_m for g in gauges], return_inverse=True)
+        self.path = path_of(self.x_m, direction, settings.speed_m_per_s, one_speed)
+        low, high = bodies.ranges_m_per_s()[fast]
+        self.range = low + 0.001 * (high - low), high - 0.001 * (high - low)
+        self.at: list[np.ndarray] = []  # times of the fit, of each gauge
+
+    def times_and_speeds(self, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Of the tip at each gauge; speeds within their range."""
+        slowness = self.path.of_slowness @ c + self.path.slowness
+        speeds = 1 / np.clip(slowness, 1 / self.range[1], 1 / self.range[0])
+        return (self.path.of_times @ c)[self.place], speeds[self.place]
+
+    def fields(self, c: np.ndarray, zone_m: float) -> list[TipField]:
+        """zone_m: X_c at the least speed. With Gamma and tau_p - tau_r it changes with the speed."""
+        _, speeds = self.times_and_speeds(c)
+        of = partial(TipField, self.bodies, direction=self.direction, zone=self.settings.zone)
+        drop = of(min(speeds), zone_m=zone_m).drop_per_root if zone_m > 0 else np.inf
+        one = {v: of(v, zone_m=1.0).drop_per_root if zone_m > 0 else 0.0 for v in set(speeds)}
+        made = {v: of(v, zone_m=(one[v] / drop) ** 2) for v in one}
+        return [made[v] for v in speeds]
+
+    def look(self, c: np.ndarray, zone_m: float) -> bool:
+        """Takes the times in reach of the tip; whether these are enough."""
+        tips, speeds = self.times_and_speeds(c)
+        fields = self.fields(c, zone_m)
+        reach = [
+            self.settings.reach_m(r.height_m, f.zone_m) for r, f in zip(self.records, fields, strict=True)
+        ]
+        self.at = [r.inside(v, t, m) for r, v, t, m in zip(self.records, speeds, tips, reach, strict=True)]
+        return all(len(at) >= LEAST_TIMES for at in self.at)
+
+    def system(self, c: np.ndarray, zone_m: float) -> tuple[np.ndarray, np.ndarray]:
+        """Field over the root of Gamma, and records, both without what offsets and steps can make of them."""
+        tips, speeds = self.times_and_speeds(c)
+        made = []
+        for r, tip, v, t, at in zip(self.records, self.fields(c, zone_m), speeds, tips, self.at, strict=True):
+            rows, steps = r.shapes(tip, v, t, at)
+            q, _ = np.linalg.qr(r.levels(steps if self.settings.step else None, at))
+            both = np.column_stack([rows.ravel(), r.data[:, at].ravel()])
+            made.append(both - q @ (q.T @ both))
+        whole = np.concatenate(made)
+        return whole[:, 0], whole[:, 1]
+
+    def residual(self, c: np.ndarray, zone_m: float) -> np.ndarray:
+        """What the best Gamma leaves of the records."""
+        shape, data = self.system(c, zone_m)
+        return data - shape * ((shape @ data) / (shape @ shape))
+
+    def data(self) -> list[np.ndarray]:
+        return [r.data[:, at] for r, at in zip(self.records, self.at, strict=True)]
+
+    def changes(self) -> list[np.ndarray]:
+        """The records in the fit about their means."""
+        return [d - d.mean(axis=1, keepdims=True) for d in self.data()]
+
+    def split(self, rows: np.ndarray) -> list[np.ndarray]:
+        """Of all gauges, to each [parts, times]."""
+        shapes = [(len(r.parts), len(at)) for r, at in zip(self.records, self.at, strict=True)]
+        ends = np.cumsum([n * m for n, m in shapes])[:-1]
+        return [a.reshape(shape) for a, shape in zip(np.split(rows, ends), shapes, strict=True)]
+
+    def scale(self, c: np.ndarray) -> np.ndarray:
+        """Changes of the parameters that a record feels."""
+        _, speeds = self.times_and_speeds(c)
+        takes_s = min(r.height_m / v for r, v in zip(self.records, speeds, strict=True))
+        scale = np.full(len(c), 0.1 * takes_s)
+        if self.path.is_free:
+            scale[-1] = 0.1 / min(speeds)
+        return scale
+
+    def trial(self, c: np.ndarray, zone_m: float) -> Trial:
+        square = squares(self.changes())
+        if square <= ROUNDING * squares(self.data()):
+            return Trial(0.0, 1.0, False)
+        shape, data = self.system(c, zone_m)
+        along = float(shape @ data)
+        left = float(data @ data) - along**2 / float(shape @ shape)
+        return Trial(square, left / square, along > 0)
+
+    def nearest(self, c: np.ndarray, zone_m: float, free_zone: bool = False) -> tuple[np.ndarray, float]:
+        """Parameters, and the zone where it is free, that leave least of the records at these times."""
+        scale = self.scale(c)
+
+        def left(u: np.ndarray) -> np.ndarray:
+            return self.residual(
+                c + scale * u[: len(c)], zone_m * np.exp(0.1 * u[-1]) if free_zone else zone_m
+            )
+
+        start = np.zeros(len(c) + free_zone)
+        if not np.isfinite(left(start)).all():
+            return c, zone_m
+        # Ended by what is gained alone: other tolerances are of numbers that are near 1.
+        u = least_squares(left, start, method="lm", ftol=LEAST_GAIN, xtol=LEAST, gtol=LEAST).x
+        return c + scale * u[: len(c)], zone_m * float(np.exp(0.1 * u[-1])) if free_zone else zone_m
+
+
+class Profile(NamedTuple):
+    """What is left of the records over the length of the cohesive zone, all else sought at each. Ascending."""
+
+    zone_m: np.ndarray
+    square: np.ndarray
+    Gamma: np.ndarray
+
+    def ends(self, variance: float) -> list[tuple[float, float]]:
+        """Zone and Gamma at which the square is above the least one by the variance, on both sides; those at the
+        end of the range where it is not."""
+        k = int(self.square.argmin())
+        more = np.sqrt((self.square - self.square[k]) / variance)
+        found = []
+        for side in (np.arange(k, -1, -1), np.arange(k, len(more))):
+            beyond = np.flatnonzero(more[side] > 1)
+            last = int(beyond[0]) if beyond.size else len(side) - 1
+            two = side[max(last - 1, 0) : last + 1]
+            at = tuple(float(np.interp(1.0, more[two], of[two])) for of in (self.zone_m, self.Gamma))
+            found.append((at[0], at[1]))
+        return found
+
+
+def profile_of(front: Front, c: np.ndarray, zone_m: float) -> tuple[Profile, np.ndarray, float]:
+    """At the times of the fit; with the parameters and the zone that leave least."""
+    height_m = min(r.height_m for r in front.records)
+    reach_m = max(front.settings.reach_m(r.height_m, zone_m) for r in front.records)
+    n = int(np.ceil(np.log(LONGEST * reach_m / (SHORTEST * height_m)) / np.log(RATIO)))
+    lengths = SHORTEST * height_m * RATIO ** np.arange(n + 1)
+    begin = int(np.abs(np.log(lengths / max(zone_m, lengths[0]))).argmin())
+    found: dict[float, tuple[float, float, np.ndarray]] = {}
+
+    def add(at_m: float, start: np.ndarray, free: bool = False) -> np.ndarray:
+        near, at_m = front.nearest(start, at_m, free)
+        shape, data = front.system(near, at_m)
+        root = float(shape @ data) / float(shape @ shape)
+        found[at_m] = float(((data - root * shape) ** 2).sum()), root**2, near
+        return near
+
+    for side in (lengths[begin:], [*lengths[:begin][::-1], *([] if front.fast else [0.0])]):
+        near = c
+        for length in side:
+            near = add(float(length), near)
+    best = min(found, key=lambda length: found[length][0])
+    if best > 0:
+        add(best, found[best][2], free=True)
+    best = min(found, key=lambda length: found[length][0])
+    for share in BESIDE:
+        add(share * best, found[best][2])
+    best = min(found, key=lambda length: found[length][0])
+    zones = np.array(sorted(found))
+    made = Profile(zones, *np.array([found[z][:2] for z in zones]).T)
+    return made, found[best][2], best
+
+
+class Fitted(NamedTuple):
+    front: Front
+    c: np.ndarray
+    zone_m: float
+    profile: Profile | None = None
+
+
+def refined(front: Front, c: np.ndarray, zone_m: float) -> Fitted | None:
+    """The nearest fit, whose times follow the tip and the zone; None where these are too few."""
+    given = front.settings.zone_m
+    zone_m = zone_m if given is None else given
+    for _ in range(WINDOWS):
+        before = front.at
+        if not front.look(c, zone_m):
+            return None
+        if before and all(np.array_equal(a, b) for a, b in zip(before, front.at, strict=True)):
+            break
+        c, zone_m = front.nearest(c, zone_m, free_zone=given is None and zone_m > 0)
+    return Fitted(front, c, zone_m)
+
+
+def profiled(found: Fitted) -> Fitted:
+    """With the zone that leaves least of all, where it is not given."""
+    front, c, zone_m, profile = found
+    if front.settings.zone_m is not None:
+        return found
+    for _ in range(WINDOWS):
+        profile, c, zone_m = profile_of(front, c, zone_m)
+        before = front.at
+        if not front.look(c, zone_m) or all(
+            abs(len(a) - len(b)) <= 0.05 * len(b) for a, b in zip(before, front.at, strict=True)
+        ):
+            front.at = before
+            break
+    return Fitted(front, c, zone_m, profile)
+
+
+def fit_tip(gauge: Gauge, bodies: OpenRun | CaseLike | _core.Case | Bodies, **settings: Any) -> TipFit:
+    """The field of the tip of a front fitted to a gauge's record: Gamma, the cohesive zone X_c, the speed, the
+    time of the tip, and of each component an offset and a step of the residual stress or strain.
+
+    bodies: see bodies_of. Settings: speed_m_per_s, where it is known. direction: +1 or -1 along x, None: the
+    one that explains more. tip_s: about when the tip passes, None: where the field explains most. zone: how the
+    strength falls, "linear" over the distance from the tip, or over "slip". zone_m: X_c where it is known, 0: a
+    singular tip. r_max_m: how far from the tip the gauge is in the fit, by default 3 heights and 2 zones. step:
+    False: none.
+    Errors follow from the Jacobian, the scatter with the correlation of neighbouring residuals, and from what
+    lengths of the zone do as well. Raises CaseError."""
+    instance(gauge, Gauge, "gauge")
+    of = bodies_of(bodies)
+    made = Settings(**settings).checked(of, [gauge])
+    try:
+        with np.errstate(all="ignore"):
+            fit = sought(gauge, of, made)
+    except (np.linalg.LinAlgError, OverflowError):
+        raise CaseError(
+            f"gauge {gauge.name}: cannot be fitted: its numbers are too large or too small"
+        ) from None
+    if made.direction is None and fit.has_tip and gauge.parts == ["xy"]:  # the same in a mirror
+        return replace(fit, doubts=[*fit.doubts, "xy alone does not tell which way: give direction"])
+    return fit
+
+
+def starts_of(gauge: Gauge, bodies: Bodies, settings: Settings) -> list[tuple[Trial, Front, np.ndarray, float]]:
+    """The best time of the tip at each direction, speed and zone."""
+    shares = zip(bodies.ranges_m_per_s(), (SHARES, FAST_SHARES), strict=False)
+    speeds = [low + share * (high - low) for (low, high), of in shares for share in of]
+    if settings.speed_m_per_s is not None:
+        speeds = [settings.speed_m_per_s]
+    zones = [n * abs(gauge.y_m) for n in START_ZONES] if settings.zone_m is None else [settings.zone_m]
+    ways = (1, -1) if settings.direction is None else (settings.direction,)
+    found = []
+    for way, V, zone_m in product(ways, speeds, zones):
+        fast = V > bodies.c_S_m_per_s
+        tips = times_of_tip(gauge, TipField(bodies, V, way, zone_m, settings.zone), V, settings) if zone_m or not fast else []
+        front = Front([gauge], bodies, settings, way, fast)
+        for tip_s in tips:
+            c = np.array([tip_s, 1 / V])[: front.path.of_times.shape[1]]
+            if front.look(c, zone_m):
+                found.append((front.trial(c, zone_m), front, c, zone_m))
+    return found
+
+
+def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) -> list[float]:
+    """Where a field explains most of the record: on even times, as fine as the field asks for, whose values are
+    means about them. The record goes on as it ends."""
+    record = Record(gauge)
+    reach_m = settings.reach_m(record.height_m, tip.zone_m)
+    step_s = max(max(record.height_m, tip.zone_m / 4) / speed / FINE, record.step_s)
+    n = int(np.sqrt(reach_m**2 - record.height_m**2) / speed / step_s)
+    ends = record.time_s[[0, -1]]
+    if settings.tip_s is not None:
+        ends = settings.tip_s + np.array([-2, 2]) * FINE * step_s
+    edges = ends[0] + step_s * (np.arange(-n, int(np.ptp(ends) / step_s) + n + 2) - 0.5)
+    if n < 2 or len(edges) > MOST_EDGES:
+        return []
+    gone = cumulative_trapezoid(record.data, record.time_s, initial=0)
+    # Integrals, linear beyond the ends, and from them means.
+    integrals = [
+        np.interp(edges, record.time_s, row)
+        + v[0] * np.minimum(edges - record.time_s[0], 0)
+        + v[-1] * np.maximum(edges - record.time_s[-1], 0)
+        for row, v in zip(gone, record.data, strict=True)
+    ]
+    means = np.diff(integrals, axis=1) / step_s
+    windows = np.lib.stride_tricks.sliding_window_view(means, 2 * n + 1, axis=1)  # [parts, tips, times]
+    windows = windows.transpose(1, 0, 2).reshape(windows.shape[1], -1)
+    even = Gauge(gauge.name, gauge.x_m, gauge.y_m, step_s * np.arange(-n, n + 1.0), dict.fromkeys(record.parts, np.arange(2 * n + 1.0)), gauge.is_strain, gauge.smoothing_s, gauge.places_m, (), gauge.bandwidth_Hz)
+    model, at = Record(even), np.arange(2 * n + 1)
+    rows, steps = model.shapes(tip, speed, 0.0, at)
+    levels = np.repeat(np.eye(len(rows)), len(at), axis=0) / np.sqrt(len(at))
+    changes = (windows**2).sum(axis=1) - ((windows @ levels) ** 2).sum(axis=1)
+    q, _ = np.linalg.qr(model.levels(steps if settings.step else None, at))
+    shape = rows.ravel() - q @ (q.T @ rows.ravel())
+    left = (windows**2).sum(axis=1) - ((windows @ q) ** 2).sum(axis=1) - (windows @ shape) ** 2 / (shape @ shape)
+    share = np.where(changes > LEAST_SQUARE * changes.max(), left / np.maximum(changes, 1e-300), np.inf)
+    best = int(share.argmin())
+    return [float(ends[0] + step_s * best)]
+
+
+def sought(gauge: Gauge, bodies: Bodies, settings: Settings) -> TipFit:
+    """The best fit from several starts."""
+    starts = starts_of(gauge, bodies, settings)
+    ended = [refined(*starts[k][1:]) for k in ranked([start[0] for start in starts])[:STARTS]]
+    fits = [fit for fit in ended if fit is not None]
+    order = ranked([f.front.trial(f.c, f.zone_m) for f in fits])
+    if not order:
+        few = (
+            f"fewer than {LEAST_TIMES} times are in reach of a tip: give a larger r_max_m, or check the units of "
+            "y and time"
+        )
+        doubts = beyond({"limiting_speed_m_per_s": bodies.limit_m_per_s})
+        return no_tip(gauge, few, f"nothing changes, or {few}", doubts, bodies)
+    (fit,) = result(profiled(fits[order[0]]))
+    return fit
+
+
+class Estimate(NamedTuple):
+    """What the gauges of a fit share."""
+
+    root: float  # of Gamma, negative where the body above slips to -x
+    Gamma_error_J_per_m2: float
+    signal: float  # the root over its error, tip and speed given
+    zones: tuple[
+        float, float, float
+    ]  # X_c over that of the best fit, and from and to; lengths where that is 0
+    of_c: np.ndarray  # covariance of the parameters
+    left: list[np.ndarray]  # of each record
+    of_all: float  # rms of what is left over that of the records
+    doubts: list[str]
+
+
+def estimate(found: Fitted) -> Estimate:
+    front, c, zone_m, profile = found
+    bodies, given = front.bodies, front.settings
+    shape, data = front.system(c, zone_m)
+    if not np.isfinite(shape).all():
+        raise np.linalg.LinAlgError  # of which LAPACK would print a line
+    root = float(shape @ data) / float(shape @ shape)
+    left = front.split(data - root * shape)
+    n_columns = (
+        sum(len(r.parts) * (1 + given.step) for r in front.records) + len(c) + (profile is not None) + 1
+    )
+    n_apart = sum(a.size / correlated(a) for a in left)
+    variance = max(squares(left) / max(n_apart - n_columns, 1), 1e-300)
+
+    slopes = [shape]
+    for move in np.diag(1e-2 * front.scale(c)):
+        up, down = (d - root * k for k, d in (front.system(c + move, zone_m), front.system(c - move, zone_m)))
+        slopes.append((up - down) / (2 * move.sum()))
+    jacobian = np.column_stack(slopes)
+    size = np.linalg.norm(jacobian, axis=0)
+    size[size == 0] = 1
+    covariance = variance * np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
+    Gamma, Gamma_error = root**2, 2 * abs(root) * float(np.sqrt(covariance[0, 0]))
+    zones, instead = (1.0, 1.0, 1.0), "" if given.speed_m_per_s else ": give speed_m_per_s"
+    is_open = False
+    if profile is not None:
+        (low, Gamma_low), (high, Gamma_high) = profile.ends(variance)
+        zones = (1.0, low / zone_m, high / zone_m) if zone_m > 0 else (0.0, low, high)
+        spread, is_open = 0.5 * abs(Gamma_high - Gamma_low), high >= profile.zone_m[-1]
+        Gamma_error = float(np.hypot(Gamma_error, spread))
+        if spread > 0.5 * Gamma_error:
+            instead = (
+                f": a cohesive zone of {1e3 * low:.3g} to {1e3 * high:.3g} mm{' and more' if is_open else ''} does "
+                f"as well, with {Gamma_low:.3g} to {Gamma_high:.3g} J/m2: give zone_m, or gauges nearer and farther"
+            )
+
+    doubts = beyond({"limiting_speed_m_per_s": bodies.limit_m_per_s, "Gamma_J_per_m2": Gamma})
+    of_all = float(np.sqrt(squares(left) / max(squares(front.changes()), 1e-300)))
+    if of_all > LARGE_RESIDUAL:
+        doubts.append(f"the residual is {100 * of_all:.0f} % of the record: it is not that of such a tip")
+    low, high = bodies.ranges_m_per_s()[front.fast]
+    _, speeds = front.times_and_speeds(c)
+    least = low if front.fast else 0.03 * high
+    if given.speed_m_per_s is None and not all(least < V < high - 0.003 * (high - low) for V in speeds):
+        doubts.append(f"V went to the end of its range, {low:.4g} to {high:.5g} m/s: give speed_m_per_s")
+    if is_open or not Gamma_error <= LARGE_ERROR * Gamma:
+        doubts.append(f"the record hardly determines Gamma{instead}")
+    if root < 0 and not any(r.gauge.doubts for r in front.records):  # of arms at wrong places, which turn it
+        doubts.append("K is negative: the body above slips to -x")
+    signal = abs(root) * float(np.sqrt(shape @ shape / variance))
+    return Estimate(root, Gamma_error, signal, zones, covariance[1:, 1:], left, of_all, doubts)
+
+
+def result(found: Fitted) -> list[TipFit]:
+    """Of each gauge, with errors and doubts."""
+    front, c, zone_m, _ = found
+    shared = estimate(found)
+    every = zip(
+        front.records,
+        front.fields(c, zone_m),
+        *front.times_and_speeds(c),
+        front.at,
+        shared.left,
+        front.place,
+        strict=True,
+    )
+    return [of_gauge(front, shared, *each) for each in every]
+
+
+def of_gauge(
+    front: Front, shared: Estimate, record: Record, tip: TipField, tip_s: float, speed: float, at: np.ndarray,
+    left: np.ndarray, place: int,
+) -> TipFit:  # fmt: skip
+    gauge, bodies, given, n = record.gauge, front.bodies, front.settings, len(record.parts)
+    data, time_s = record.data[:, at], record.time_s[at]
+    about_mean = data - data.mean(axis=1, keepdims=True)
+    largest, most = "strain" if gauge.is_strain else "stress_Pa", float(np.abs(about_mean).max())
+    doubts = shared.doubts + beyond({largest: most})
+    if gauge.is_strain and most > STIFF_STRAIN and bodies.youngs_modulus_Pa > STIFF_PA:
+        doubts.append(
+            f"strain changes by {most:.2g}, beyond the elastic range of bodies as stiff: check its units"
+        )
+    if shared.signal < LEAST_SIGNAL:
+        return no_tip(
+            gauge,
+            f"a tip's field fits by {shared.signal:.1f} errors, {LEAST_SIGNAL} are needed: give speed_m_per_s, or "
+            "more gauges together",
+            "no change stands out of the noise; if you see one, check the units of y and time",
+            doubts,
+            bodies,
+        )
+    doubts += flat_tops_within(gauge, time_s[0], time_s[-1])
+    doubts += high_pass_that_explains_more(front, record, shared, tip_s, speed, tip.zone_m, left)
+    gap_s = float(np.diff(record.time_s[at[0] : at[-1] + 1]).max())
+    if gap_s * speed > max(record.height_m, tip.zone_m):
+        doubts.append(
+            f"times of the record are up to {1e6 * gap_s:.3g} us apart, in which the front runs farther than "
+            "the gauge is high"
+        )
+    if front.path.is_free and n == 1 and len(front.records) == 1:
+        doubts.append(f"{record.parts[0]} alone hardly tells V: give speed_m_per_s, or more gauges together")
+    doubts += gauge.doubts
+    if min(np.count_nonzero(time_s < tip_s), np.count_nonzero(time_s > tip_s)) < 4:
+        doubts.append("the record has hardly any times on one side of the tip")
+
+    rows, steps = record.shapes(tip, speed, tip_s, at)
+    levels = record.levels(steps if given.step else None, at)
+    own = np.linalg.lstsq(levels, (data - shared.root * rows).ravel(), rcond=None)[0]
+    fitted = shared.root * rows + (levels @ own).reshape(n, -1)
+    of_time, of_slowness = front.path.of_times[place], front.path.of_slowness[place]
+    speed_error = float(np.sqrt(of_slowness @ shared.of_c @ of_slowness)) * speed**2
+    residual = np.sqrt((left**2).mean(axis=1) / np.maximum((about_mean**2).mean(axis=1), 1e-300))
+    zone_m, low_m, high_m = (z * (tip.zone_m or 1.0) for z in shared.zones)
+    return TipFit(
+        gauge=gauge.name, x_m=gauge.x_m, y_m=gauge.y_m, together=len(front.records), direction=front.direction,
+        tip_s=tip_s, tip_error_s=float(np.sqrt(of_time @ shared.of_c @ of_time)), speed_m_per_s=speed,
+        speed_error_m_per_s=np.nan if given.speed_m_per_s else speed_error,
+        K_Pa_sqrt_m=shared.root * tip.K_per_root, Gamma_J_per_m2=shared.root**2,
+        Gamma_error_J_per_m2=shared.Gamma_error_J_per_m2, cohesive_zone_m=zone_m, zone_low_m=low_m,
+        zone_high_m=high_m, strength_drop_Pa=shared.root * tip.drop_per_root,
+        offset=dict(zip(record.parts, own[:n].tolist(), strict=True)),
+        step=dict(zip(record.parts, (own[n:] if given.step else np.zeros(n)).tolist(), strict=True)),
+        residual=dict(zip(record.parts, residual.tolist(), strict=True)), residual_of_all=shared.of_all,
+        n_times=len(at), doubts=doubts, time_s=time_s, fitted=dict(zip(record.parts, fitted, strict=True)),
+    )  # fmt: skip
+
+
+def high_pass_that_explains_more(
+    front: Front,
+    record: Record,
+    shared: Estimate,
+    tip_s: float,
+    speed: float,
+    zone_m: float,
+    left: np.ndarray,
+) -> list[str]:
+    """A doubt where an amplifier that lets no constant pass, which the fit does not know, would leave LEAST_SIGNAL
+    errors less of a record and make Gamma two errors another one."""
+    alone = Front(
+        [record.gauge],
+        front.bodies,
+        replace(front.settings, speed_m_per_s=speed),
+        front.direction,
+        front.fast,
+    )
+    (own,) = alone.records
+    own.leaked = cumulative_trapezoid(own.data, own.time_s, initial=0)
+    if not alone.look(np.array([tip_s]), zone_m):
+        return []
+    c, zone_m = alone.nearest(np.array([tip_s]), zone_m)
+    shape, data = alone.system(c, zone_m)
+    root = float(shape @ data) / float(shape @ shape)
+    (less,) = alone.split(data - root * shape)
+    variance = squares([less]) / max(less.size / correlated(less) - 10, 1)
+    rows, steps = own.shapes(alone.fields(c, zone_m)[0], speed, float(c[0]), alone.at[0])
+    levels = own.levels(steps, alone.at[0])
+    linear = np.linalg.lstsq(levels, (alone.data()[0] - root * rows).ravel(), rcond=None)[0]
+    cut_off = -float(linear[-1]) / (2 * np.pi)
+    if (
+        cut_off > 0
+        and left.shape == less.shape
+        and squares([left]) - squares([less]) > LEAST_SIGNAL**2 * variance
+        and abs(root**2 - shared.root**2) > 2 * shared.Gamma_error_J_per_m2
+    ):
+        return [
+            f"a high-pass of {cut_off:.2g} Hz, as of an amplifier, explains more, and makes Gamma {root**2:.3g} J/m2"
+        ]
+    return []
+
+
+def no_tip(gauge: Gauge, why: str, unchanged: str, doubts: list[str], bodies: Bodies) -> TipFit:
+    nan = np.nan
+    change = largest_change(gauge, bodies.limit_m_per_s)
     said = f"no tip is found, though {change}: {why}" if change else f"no front passes: {unchanged}"
     return TipFit(
-        gauge.name, gauge.x_m, gauge.y_m, 0, *numbers, {}, {}, {}, np.nan, 0,
-        [said, *flat_tops_within(gauge, -np.inf, np.inf), *doubts, *gauge.doubts],
-        np.empty(0), {},
+        gauge.name, gauge.x_m, gauge.y_m, 1, 0, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, {}, {}, {},
+        nan, 0, [said, *flat_tops_within(gauge, -np.inf, np.inf), *doubts, *gauge.doubts], np.empty(0), {},
     )  # fmt: skip
 
 
@@ -124,295 +758,6 @@ def largest_change(gauge: Gauge, limit: float) -> str:
     return told
 
 
-class Trial(NamedTuple):
-    """How the model does at a speed and time of the tip."""
-
-    square: float  # of the record about its means
-    left: float  # the share that the model leaves
-    slips_to_x: bool  # K is positive
-
-
-def ranked(trials: list[Trial]) -> list[int]:
-    """Those where the record changes much, from the one that leaves least. Without xy both directions leave
-    the same: then slip to +x comes first."""
-    most = max((t.square for t in trials), default=0.0)
-    changing = [k for k, t in enumerate(trials) if t.square > LEAST_SQUARE * most]
-    return sorted(changing, key=lambda k: (round(trials[k].left, 9), not trials[k].slips_to_x))
-
-
-class Tip:
-    """The model: a gauge, the bodies, a direction."""
-
-    def __init__(
-        self, gauge: Gauge, case: _core.Case, along_x: int, step: bool, r_m: tuple[float, float]
-    ) -> None:
-        self.gauge, self.case, self.along_x, self.step, self.r_m = gauge, case, along_x, step, r_m
-        self.parts = gauge.parts
-        self.weights = [weights(part) for part in self.parts]
-        self.places_m = [gauge.places_m.get(part, (gauge.x_m, gauge.y_m)) for part in self.parts]
-        self.data = np.array([gauge.values[part] for part in self.parts])
-        self.time_s = gauge.time_s
-        self.step_s = float(np.median(np.diff(self.time_s)))
-        self.own_kernel = gaussian(gauge.smoothing_s / self.step_s)
-        # Of a low-pass of first order that the record is taken to have passed; and whether of a high-pass.
-        self.lag_s, self.leaks = 0.0, False
-
-    def kernel(self) -> tuple[np.ndarray, int]:
-        """Weights of what the record has passed, and how many of them are of times to come."""
-        weights, n = self.own_kernel, len(self.own_kernel) // 2
-        if self.lag_s > 0:
-            past = np.exp(-np.arange(np.ceil(LAGS * self.lag_s / self.step_s)) * self.step_s / self.lag_s)
-            weights = np.convolve(weights, past / past.sum())
-        return weights, n
-
-    def inside(self, speed: float, tip_s: float) -> np.ndarray:
-        """Indices of the times at which the gauge is in reach of the tip and outside of r_min."""
-        far_s = np.sqrt(self.r_m[1] ** 2 - self.gauge.y_m**2) / speed
-        at = np.arange(*np.searchsorted(self.time_s, [tip_s - far_s, tip_s + far_s]))
-        return at[np.hypot(speed * (self.time_s[at] - tip_s), self.gauge.y_m) >= self.r_m[0]]
-
-    def shapes(self, speed: float, tip_s: float, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The field over K of each component or arm, and the step that goes with it, at the times of these
-        indices. [parts, times] both"""
-        time_s = self.time_s[at]
-        kernel, n = self.kernel()
-        if len(kernel) > 1:
-            around = np.arange(at[0] - (len(kernel) - 1 - n), at[-1] + n + 1)
-            time_s = self.time_s[0] + self.step_s * around
-        tip = _core.TipField(self.case, speed, self.along_x)
-        of = tip.strain_per_K if self.gauge.is_strain else tip.stress_per_K
-        at_place: dict[tuple[float, float], list[np.ndarray]] = {}
-        for place in self.places_m:
-            if place not in at_place:
-                x_m = self.along_x * speed * (tip_s - time_s) + (place[0] - self.gauge.x_m)
-                at_place[place] = list(of(x_m, np.full_like(x_m, place[1])))
-                # 0 ahead and 1 behind on the interface, and harmonic above it.
-                at_place[place].append(np.arctan2(abs(place[1]), self.along_x * x_m) / np.pi)
-        rows = [w @ np.array(at_place[p][:3]) for w, p in zip(self.weights, self.places_m, strict=True)]
-        steps = [at_place[place][3] for place in self.places_m]
-        if len(kernel) > 1:
-            rows, steps = ([smooth(row, kernel)[at - at[0]] for row in of] for of in (rows, steps))
-        return np.array(rows), np.array(steps)
-
-    def columns(self, speed: float, tip_s: float, at: np.ndarray) -> np.ndarray:
-        """Of the linear parameters: K; offset of each component; step of each. [components x times, ...]"""
-        per_K, stepped = self.shapes(speed, tip_s, at)
-        each = np.eye(len(self.parts))
-        level = np.repeat(each, len(at), axis=0)
-        columns = [per_K.reshape(-1, 1), level]
-        if self.step:
-            columns.append(level * stepped.reshape(-1, 1))
-        if self.leaks:  # dy/dt = dx/dt - 2 pi f y: what it takes is the integral of what it leaves
-            gone = cumulative_trapezoid(self.data, self.time_s, initial=0)
-            columns.append(gone[:, at].reshape(-1, 1))
-        return np.hstack(columns)
-
-    def trial(self, speed: float, tip_s: float) -> Trial:
-        at = self.inside(speed, tip_s)
-        if len(at) < LEAST_TIMES:
-            return Trial(0.0, 1.0, False)
-        columns, data = self.columns(speed, tip_s, at), self.data[:, at].ravel()
-        n = len(self.parts)
-        q, r = np.linalg.qr(np.roll(columns / np.linalg.norm(columns, axis=0), -1, axis=1))  # K last
-        along = q.T @ data
-        square = float(data @ data - along[:n] @ along[:n])
-        if square <= ROUNDING * float(data @ data):
-            return Trial(0.0, 1.0, False)
-        left = float(data @ data - along @ along) / max(square, 1e-300)
-        return Trial(square, left, bool(along[-1] * r[-1, -1] > 0))
-
-
-def limiting_speed_m_per_s(bodies: _core.Case) -> float:
-    """From which on there is no such field."""
-    return float(_core.TipField(bodies, 0.0, 1).limiting_speed_m_per_s)
-
-
-def bodies_of(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
-    """See case_of_bodies; refused where they differ."""
-    case = case_of_bodies(given)
-    one = np.ones(1)
-    if np.isnan(_core.TipField(case, 0.0, 1).stress_per_K(one, one)[0][0]):
-        raise CaseError("the bodies differ: the field is that of equal bodies or of one on a rigid plane")
-    return case
-
-
-def tip_field(
-    bodies: OpenRun | CaseLike,
-    x_m: ArrayLike,
-    y_m: ArrayLike,
-    *,
-    speed_m_per_s: float,
-    Gamma_J_per_m2: float,
-    direction: int = 1,
-    stress: bool = False,
-) -> dict[str, np.ndarray]:
-    """Strain, or stress in Pa, that the tip of a front along direction adds to the state with the residual
-    traction: xx, yy, xy at places from the tip. The body above slips to +x. NaN below a rigid plane."""
-    case = bodies_of(bodies)
-    V = number(speed_m_per_s, "speed_m_per_s", least=0)
-    if direction not in (1, -1):
-        raise CaseError(f"direction is {shown(direction)}; it must be 1 or -1")
-    tip = _core.TipField(case, V, direction)
-    if not tip.limiting_speed_m_per_s > V:
-        raise CaseError(f"speed_m_per_s is {V:g} m/s; the field ends at {tip.limiting_speed_m_per_s:.5g} m/s")
-    K = np.sqrt(number(Gamma_J_per_m2, "Gamma_J_per_m2", least=0) / tip.energy_per_K2)
-    shapes = [
-        np.asarray(number(of, name)) if np.ndim(of) == 0 else array(np.ravel(of), name).reshape(np.shape(of))
-        for name, of in (("x_m", x_m), ("y_m", y_m))
-    ]
-    try:
-        x, y = np.broadcast_arrays(*shapes)
-    except ValueError:
-        raise CaseError(
-            f"x_m has the shape {shapes[0].shape}, y_m {shapes[1].shape}: give one of both"
-        ) from None
-    per_K = tip.stress_per_K if flag(stress, "stress") else tip.strain_per_K
-    found = per_K(np.ascontiguousarray(x.ravel()), np.ascontiguousarray(y.ravel()))
-    return {part: K * of.reshape(x.shape) for part, of in zip(COMPONENTS, found, strict=True)}
-
-
-def scan(tip: Tip, speed: float, tip_s: float | None) -> float | None:
-    """The best time of the tip at a speed."""
-    fine_s = 0.25 * abs(tip.gauge.y_m) / speed
-    ends = (tip.time_s[0], tip.time_s[-1]) if tip_s is None else (tip_s - 8 * fine_s, tip_s + 8 * fine_s)
-    step_s = max(fine_s, (ends[1] - ends[0]) / (2 * len(tip.time_s)))  # finer than the record is no use
-    tips = np.arange(ends[0], ends[1] + step_s, step_s)
-    order = ranked([tip.trial(speed, t) for t in tips])
-    return float(tips[order[0]]) if order else None
-
-
-def fit_tip(
-    gauge: Gauge,
-    bodies: OpenRun | CaseLike | _core.Case,
-    *,
-    speed_m_per_s: float | None = None,
-    direction: int | None = None,
-    tip_s: float | None = None,
-    r_min_m: float = 0.0,
-    r_max_m: float | None = None,
-    step: bool = True,
-) -> TipFit:
-    """The steadily moving mode II field fitted to a gauge's record: K and with it the fracture energy Gamma,
-    the speed unless it is given, the time of the tip, and of each component an offset and a step of the
-    residual stress or strain.
-
-    bodies: see bodies_of. direction: +1 or -1 along x, None: the one that explains more. tip_s: about when
-    the tip passes, None: where the field explains most of the record.
-    The fit takes the times at which the gauge is from r_min_m, beyond the cohesive zone, to r_max_m from the
-    tip, by default 5 times the gauge's height.
-    Errors follow from the Jacobian and the scatter, with the correlation of neighbouring residuals."""
-    instance(gauge, Gauge, "gauge")
-    flag(step, "step")
-    if tip_s is not None:
-        tip_s = number(tip_s, "tip_s", finite=True)
-    case = bodies_of(bodies)
-    limit = limiting_speed_m_per_s(case)
-    height = abs(gauge.y_m)
-    r_m = (
-        number(r_min_m, "r_min_m", least=0),
-        number(REACH * height if r_max_m is None else r_max_m, "r_max_m"),
-    )
-    if not max(r_m[0], height) < r_m[1]:
-        raise CaseError(
-            f"gauge {gauge.name}: r_max_m is {r_m[1]:g} m; it must be above r_min_m, {r_m[0]:g} m, and the "
-            f"gauge's height, {height:g} m"
-        )
-    if direction not in (None, 1, -1):
-        raise CaseError(f"direction is {shown(direction)}; it must be 1, -1 or None")
-    speeds = [share * limit for share in SHARES]
-    if speed_m_per_s is not None:
-        speeds = [number(speed_m_per_s, "speed_m_per_s", above=0)]
-        if not speeds[0] < limit:
-            raise CaseError(f"speed_m_per_s is {speeds[0]:g} m/s; the field ends at {limit:.5g} m/s")
-    try:
-        with np.errstate(all="ignore"):
-            fit = sought(gauge, case, speeds, speed_m_per_s is not None, direction, tip_s, step, r_m)
-    except (np.linalg.LinAlgError, OverflowError):
-        raise CaseError(
-            f"gauge {gauge.name}: cannot be fitted: its numbers are too large or too small"
-        ) from None
-    if direction is None and fit.has_tip and gauge.parts == ["xy"]:  # the same in a mirror
-        return replace(fit, doubts=[*fit.doubts, "xy alone does not tell which way: give direction"])
-    return fit
-
-
-def sought(
-    gauge: Gauge, case: _core.Case, speeds: list[float], given: bool, direction: int | None,
-    tip_s: float | None, step: bool, r_m: tuple[float, float],
-) -> TipFit:  # fmt: skip
-    """The best fit from starts at these speeds; `given`: the one speed is kept."""
-    limit = limiting_speed_m_per_s(case)
-    starts = []
-    for way in (1, -1) if direction is None else (direction,):
-        tip = Tip(gauge, case, way, step, r_m)
-        times_s = [(v, scan(tip, v, tip_s)) for v in speeds]
-        starts += [(tip.trial(v, t), tip, v, t) for v, t in times_s if t is not None]
-    ended = []
-    for k in ranked([start[0] for start in starts])[:STARTS]:
-        _, tip, v, t = starts[k]
-        t, v, at = refined(tip, v, t, given, limit)
-        ended.append((tip.trial(v, t), tip, v, t, at))
-    order = ranked([end[0] for end in ended])
-    if not order:
-        few = (
-            f"fewer than {LEAST_TIMES} times are within r_max_m = {r_m[1]:g} m of a tip: give a larger one, "
-            "or check the units of y and time"
-        )
-        doubts = beyond({"limiting_speed_m_per_s": limit})
-        return no_tip(gauge, few, f"nothing changes, or {few}", doubts, limit)
-    _, tip, v, t, at = ended[order[0]]
-    return result(tip, v, t, at, given, limit)
-
-
-def nearest(
-    tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float, lag_s: float = 0.0
-) -> tuple[float, float, float]:
-    """Time of the tip, speed, and lag where it is above 0, that leave least of the record at these times."""
-    data, takes_s, reach_s = tip.data[:, at].ravel(), abs(tip.gauge.y_m) / speed, tip.r_m[1] / speed
-
-    def residual(p: np.ndarray) -> np.ndarray:
-        tip.lag_s = float(p[-1]) if lag_s > 0 else 0.0
-        columns = tip.columns(speed if given else p[1], p[0], at)
-        q, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
-        return data - q @ (q.T @ data)
-
-    sought = [(at_s, 1e-3 * takes_s, at_s - reach_s, at_s + reach_s)]  # start, step, ends
-    if not given:
-        sought.append((speed, 1e-4 * limit, 0.02 * limit, 0.999 * limit))
-    if lag_s > 0:
-        sought.append((lag_s, 1e-2 * lag_s, 0.25 * tip.step_s, LONGEST_LAG * takes_s))
-    start, steps, low, high = np.array(sought).T
-
-    def slopes(p: np.ndarray) -> np.ndarray:
-        return np.array([(residual(p + m) - residual(p - m)) / (2 * m.sum()) for m in np.diag(steps)]).T
-
-    if not np.isfinite(residual(start)).all():
-        return at_s, speed, lag_s
-    # Ended by what is gained alone: other tolerances are of numbers that are near 1.
-    options = {"x_scale": steps, "ftol": LEAST_GAIN, "xtol": None, "gtol": None, "max_nfev": MOST_TRIALS}
-    found = least_squares(residual, start, slopes, (low, high), **options).x
-    tip.lag_s = float(found[-1]) if lag_s > 0 else 0.0
-    return float(found[0]), speed if given else float(found[1]), tip.lag_s
-
-
-def refined(
-    tip: Tip, speed: float, at_s: float, given: bool, limit: float
-) -> tuple[float, float, np.ndarray]:
-    """Time of the tip, speed and the times of the fit, which follow the tip."""
-
-    at = tip.inside(speed, at_s)
-    for _ in range(8):
-        to_s, v, _ = nearest(tip, speed, at_s, at, given, limit)
-        moved = tip.inside(v, to_s)
-        if len(moved) < LEAST_TIMES:
-            break
-        at_s, speed = to_s, v
-        if np.array_equal(moved, at):
-            break
-        at = moved
-    return at_s, speed, at
-
-
 def correlated(left: np.ndarray) -> float:
     """How much residuals that follow one another add to the variance of a mean of them: 1 + 2 times the sum
     of their autocorrelation up to its first zero, over all components. White noise adds to its first term
@@ -425,214 +770,125 @@ def correlated(left: np.ndarray) -> float:
     return max(1.0, float(2 * follow[:last].sum() / max(follow[0], 1e-300) - 1))
 
 
-def filters_that_explain_more(
-    tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float,
-    found: tuple[float, float, float],
-) -> list[str]:  # fmt: skip
-    """What an amplifier, which the fit does not know, may have done: a high-pass or low-pass of first order
-    that leaves LEAST_SIGNAL errors less of the record, where its Gamma is two errors from the one found.
-
-    found: Gamma, its error, and the square of what the fit leaves."""
-    Gamma, error, square = found
-    # A filter goes by even steps; a record of other times than those of a tip has no lag.
-    takes_s, uneven_s = abs(tip.gauge.y_m) / speed, float(np.ptp(np.diff(tip.time_s)))
-    has_lag = uneven_s < 0.01 * tip.step_s < tip.step_s < takes_s < len(tip.time_s) * tip.step_s
-    told = []
-    for word, like in (("high", "an amplifier"), ("low", "an amplifier or a cohesive zone")):
-        other, lag_s = copy(tip), LAG * takes_s if word == "low" else 0.0
-        other.leaks = word == "high"
-        if lag_s > 0 and not has_lag:
-            continue
-        to_s, v, lag_s = nearest(other, speed, at_s, at, given, limit, lag_s)
-        columns, data = other.columns(v, to_s, at), tip.data[:, at]
-        size = np.linalg.norm(columns, axis=0)
-        linear = np.linalg.lstsq(columns / size, data.ravel(), rcond=None)[0] / size
-        left = data - (columns @ linear).reshape(data.shape)
-        variance = (left**2).sum() / max(data.size / correlated(left) - columns.shape[1] - 2, 1)
-        own = float(linear[0]) ** 2 * _core.TipField(tip.case, v, tip.along_x).energy_per_K2
-        cut_off = 1 / lag_s if lag_s > 0 else -float(linear[-1])
-        if (
-            square - (left**2).sum() > LEAST_SIGNAL**2 * variance
-            and abs(own - Gamma) > 2 * error
-            and cut_off > 0
-        ):
-            told.append(
-                f"a {word}-pass of {cut_off / (2 * np.pi):.2g} Hz, as of {like}, explains more, and makes "
-                f"Gamma {own:.3g} J/m2"
-            )
-    return told
-
-
-def result(tip: Tip, speed: float, at_s: float, at: np.ndarray, given: bool, limit: float) -> TipFit:
-    gauge, n = tip.gauge, len(tip.parts)
-    columns, data = tip.columns(speed, at_s, at), tip.data[:, at].ravel()
-    if not np.isfinite(columns).all():
-        raise np.linalg.LinAlgError  # of which LAPACK would print a line
-    size = np.linalg.norm(columns, axis=0)
-    linear = np.linalg.lstsq(columns / size, data, rcond=None)[0] / size
-    K = float(linear[0])
-    fitted = columns @ linear
-    left = (data - fitted).reshape(n, -1)
-    about_mean = tip.data[:, at] - tip.data[:, at].mean(axis=1, keepdims=True)
-
-    def rms(values: np.ndarray) -> Any:
-        return np.sqrt((values**2).mean(axis=-1))
-
-    def per_K2(v: float) -> float:
-        return _core.TipField(tip.case, v, tip.along_x).energy_per_K2
-
-    ds, dv = 1e-3 * abs(gauge.y_m) / speed, 1e-4 * limit
-    moved = [(tip.columns(speed, at_s + d, at) @ linear) for d in (ds, -ds)]
-    slopes = [columns, ((moved[0] - moved[1]) / (2 * ds))[:, None]]
-    if not given:
-        moved = [(tip.columns(speed + d, at_s, at) @ linear) for d in (dv, -dv)]
-        slopes.append(((moved[0] - moved[1]) / (2 * dv))[:, None])
-    jacobian = np.hstack(slopes)
-    scale = np.linalg.norm(jacobian, axis=0)
-    variance = (left**2).sum() / max(data.size / correlated(left) - jacobian.shape[1], 1)
-    largest = "strain" if gauge.is_strain else "stress_Pa"
-    most = float(np.abs(about_mean).max())
-    doubts = beyond({"limiting_speed_m_per_s": limit, largest: most})
-    if gauge.is_strain and most > STIFF_STRAIN and per_K2(0.0) * STIFF_PA < 1:
-        doubts.append(
-            f"strain changes by {most:.2g}, beyond the elastic range of bodies as stiff: check its units"
-        )
-    of_K = np.linalg.pinv((columns / size).T @ (columns / size))[0, 0] / size[0] ** 2
-    signal = abs(K) / float(np.sqrt(max(variance * of_K, 1e-300)))
-    if signal < LEAST_SIGNAL:
-        return no_tip(
-            gauge,
-            f"a tip's field fits by {signal:.1f} errors, {LEAST_SIGNAL} are needed. Perhaps the cohesive "
-            "zone is longer than the gauge is high (give r_min_m beyond the zone, and r_max_m), or the front "
-            f"is faster than {limit:.5g} m/s (its field is another)",
-            "no change stands out of the noise; if you see one, check the units of y and time",
-            doubts,
-            limit,
-        )
-    covariance = variance * np.linalg.pinv((jacobian / scale).T @ (jacobian / scale)) / np.outer(scale, scale)
-    errors = np.sqrt(np.diag(covariance))
-    i_tip, i_speed = columns.shape[1], columns.shape[1] + 1
-
-    slope = np.zeros(jacobian.shape[1])
-    slope[0] = 2 * K * per_K2(speed)
-    if not given:
-        slope[i_speed] = K**2 * (per_K2(speed + dv / 10) - per_K2(speed - dv / 10)) / (dv / 5)
-    Gamma, Gamma_error = K**2 * per_K2(speed), float(np.sqrt(slope @ covariance @ slope))
-    of_all = float(np.sqrt((left**2).sum() / max((about_mean**2).sum(), 1e-300)))
-    doubts += beyond({"Gamma_J_per_m2": Gamma})
-    if of_all > LARGE_RESIDUAL:
-        doubts.append(f"the residual is {100 * of_all:.0f} % of the record: it is not that of such a tip")
-    if not given and not 0.03 * limit < speed < 0.997 * limit:
-        doubts.append(f"V went to the end of its range, 0 to {limit:.5g} m/s: give speed_m_per_s")
-    if not Gamma_error <= LARGE_ERROR * Gamma:
-        doubts.append("the record hardly determines Gamma" + ("" if given else ": give speed_m_per_s"))
-    if K < 0 and not gauge.doubts:  # of arms at wrong places, which turn it
-        doubts.append("K is negative: the body above slips to -x")
-    time_s = tip.time_s[at]
-    doubts += flat_tops_within(gauge, time_s[0], time_s[-1])
-    doubts += filters_that_explain_more(
-        tip, speed, at_s, at, given, limit, (Gamma, Gamma_error, float((left**2).sum()))
-    )
-    gap_s = float(np.diff(tip.time_s[at[0] : at[-1] + 1]).max())
-    if gap_s * speed > abs(gauge.y_m):
-        doubts.append(
-            f"times of the record are up to {1e6 * gap_s:.3g} us apart, in which the front runs farther than "
-            "the gauge is high"
-        )
-    if not given and n == 1:
-        doubts.append(f"{tip.parts[0]} alone hardly tells V: give speed_m_per_s, a number or gauges")
-    doubts += gauge.doubts
-    if min(np.count_nonzero(time_s < at_s), np.count_nonzero(time_s > at_s)) < 4:
-        doubts.append("the record has hardly any times on one side of the tip")
-    return TipFit(
-        gauge.name, gauge.x_m, gauge.y_m, tip.along_x, at_s, float(errors[i_tip]), speed,
-        np.nan if given else float(errors[i_speed]), K, float(errors[0]), Gamma, Gamma_error,
-        dict(zip(tip.parts, linear[1 : 1 + n].tolist(), strict=True)),
-        dict(zip(tip.parts, (linear[1 + n :] if tip.step else np.zeros(n)).tolist(), strict=True)),
-        dict(zip(tip.parts, (rms(left) / np.maximum(rms(about_mean), 1e-300)).tolist(), strict=True)),
-        of_all, len(at), doubts, time_s, dict(zip(tip.parts, fitted.reshape(n, -1), strict=True)),
-    )  # fmt: skip
-
-
 def fit_tips(
     gauges: Iterable[Gauge],
-    bodies: OpenRun | CaseLike,
+    bodies: OpenRun | CaseLike | _core.Case | Bodies,
     *,
-    speed_m_per_s: float | str | None = None,
     passages: int = 1,
-    **options: Any,
+    **settings: Any,
 ) -> list[TipFit]:
     """fit_tip of each gauge and each of so many passages of fronts, in the order of time. Doubts of it, too:
     one more passage, and the times of the tip at the gauges beside it, which make another speed.
 
-    speed_m_per_s: a number; None: of each fit; "gauges": by the times of the tip at the gauges beside it, in
-    the same passage and direction, fitted first. options: of fit_tip. Of one passage, the order of arrivals
-    at the gauges beside it gives a direction that a record does not tell by xy with xx or yy."""
-    case, n = bodies_of(bodies), whole(passages, "passages", least=1)
-    if isinstance(speed_m_per_s, str) and speed_m_per_s != "gauges":
-        raise CaseError(f"speed_m_per_s is {shown(speed_m_per_s)}; it must be a number, None or 'gauges'")
-    speed = None if isinstance(speed_m_per_s, str) else speed_m_per_s
+    settings: of fit_tip. Of one passage, the order of arrivals at the gauges beside it gives a direction that a
+    record does not tell by xy with xx or yy."""
+    of, n = bodies_of(bodies), whole(passages, "passages", least=1)
     given = some_gauges(gauges)
-    options["speed_m_per_s"] = speed
-    found = [passing(gauge, case, n, options) for gauge in given]
-    if n == 1 and options.get("direction") is None:
+    found = [passing(gauge, of, n, settings) for gauge in given]
+    if n == 1 and settings.get("direction") is None:
         ways = ways_by_arrivals([fits[0] for fits in found])
         for k, gauge in enumerate(given):
-            if (
-                ways[k]
-                and not ("xy" in gauge.parts and len(gauge.parts) > 1)
-                and gauge.parts[0] in COMPONENTS
-            ):
-                known = {**options, "direction": ways[k], "tip_s": found[k][0].tip_s}
-                found[k] = [fit_tip(gauge, case, **known)]
-    told = doubts_of_arrivals(found, case)
-    if speed_m_per_s == "gauges":
-        speeds = [speeds_between(found, own) for own in found]
-        for k, gauge in enumerate(given):
-            found[k] = refitted(gauge, case, found[k], options, speeds[k])
+            tells = "xy" in gauge.parts and len(gauge.parts) > 1
+            if ways[k] and not tells and gauge.parts[0] in COMPONENTS:
+                known = {**settings, "direction": ways[k], "tip_s": found[k][0].tip_s}
+                found[k] = [fit_tip(gauge, of, **known)]
+    told = doubts_of_arrivals(found, of)
     for k, gauge in enumerate(given):
-        another = doubts_of_another(gauge, case, found[k], options)
+        another = doubts_of_another(gauge, of, found[k], settings)
         found[k] = [
             replace(f, doubts=[*f.doubts, *t, *another]) for f, t in zip(found[k], told[k], strict=True)
         ]
     return [fit for own in found for fit in own]
 
 
-def passing(gauge: Gauge, case: _core.Case, n: int, options: dict[str, Any]) -> list[TipFit]:
+def fit_front(
+    gauges: Iterable[Gauge],
+    bodies: OpenRun | CaseLike | _core.Case | Bodies,
+    *,
+    alone: Iterable[TipFit] | None = None,
+    one_speed: bool = False,
+    **settings: Any,
+) -> list[TipFit]:
+    """The field of one front fitted to all gauges together: one Gamma and one tau_p - tau_r, with which X_c
+    changes with the speed; offsets and steps of each. The speed is that of the tip's times along x, by the line
+    through two places, the parabola through three, the cubic spline through more; or one_speed of all; or given.
+
+    alone: fit_tips of the gauges; those without a tip, or in the other direction than most, are left out.
+    settings: of fit_tip. Raises CaseError where no front passes two gauges or more, one after the other."""
+    of, given = bodies_of(bodies), some_gauges(gauges)
+    made = Settings(**settings).checked(of, given)
+    fits = list(alone) if alone is not None else fit_tips(given, of, **settings)
+    seen = [f for f in fits if f.has_tip]
+    way = made.direction or (1 if sum(f.direction for f in seen) >= 0 else -1)
+    by_name = {f.gauge: f for f in seen if f.direction == way}
+    given = [g for g in given if g.name in by_name]
+    if len(given) < 2:
+        raise CaseError("no front passes two gauges or more the same way: there is nothing to fit together")
+    x_m = np.unique([g.x_m for g in given])
+    tips = np.array([np.mean([by_name[g.name].tip_s for g in given if g.x_m == x]) for x in x_m])
+    V = made.speed_m_per_s or float(np.median([by_name[g.name].speed_m_per_s for g in given]))
+    if len(x_m) > 1 and made.speed_m_per_s is None:
+        slowness = way * float(np.polyfit(x_m, tips, 1)[0])
+        V = 1 / slowness if slowness > 0 else -1.0
+        if not any(low < V < high for low, high in of.ranges_m_per_s()):
+            told = f"make {V:.4g} m/s, at which there is no field" if V > 0 else "do not follow one another"
+            raise CaseError(
+                f"the tip's times at the gauges {told}: check clocks and places, or give speed_m_per_s"
+            )
+    fast = of.c_S_m_per_s < V
+    ended = []
+    heights = [height * min(abs(g.y_m) for g in given) for height in START_ZONES]
+    zones = {float(np.median([by_name[g.name].cohesive_zone_m for g in given])), *heights}
+    with np.errstate(all="ignore"):
+        for zone_m in sorted(zones) if made.zone_m is None else [made.zone_m]:
+            front = Front(given, of, made, way, fast, flag(one_speed, "one_speed"))
+            c = np.array([tips[0], 1 / V]) if front.path.is_free else tips
+            fit = refined(front, c, zone_m) if not fast or zone_m > 0 else None
+            if fit is not None:
+                ended.append((front.trial(fit.c, fit.zone_m), fit))
+        order = ranked([trial for trial, _ in ended])
+        if not order:
+            raise CaseError(
+                f"fewer than {LEAST_TIMES} times of a gauge are in reach of the tip: give r_max_m"
+            )
+        return result(profiled(ended[order[0]][1]))
+
+
+def passing(gauge: Gauge, bodies: Bodies, n: int, settings: dict[str, Any]) -> list[TipFit]:
     """The tips that pass a gauge: each is sought in what those before it leave of the record."""
     found: list[TipFit] = []
     rest = gauge
     for _ in range(n):
-        found.append(fit_tip(rest, case, **options))
-        rest = without(rest, case, found[-1])
-    return each_without_the_others(gauge, case, found, options)
+        found.append(fit_tip(rest, bodies, **settings))
+        rest = without(rest, bodies, found[-1])
+    return each_without_the_others(gauge, bodies, found, settings)
 
 
 def each_without_the_others(
-    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any]
+    gauge: Gauge, bodies: Bodies, fits: list[TipFit], settings: dict[str, Any]
 ) -> list[TipFit]:
     found = sorted(fits, key=lambda fit: fit.tip_s if fit.has_tip else np.inf)
     for _ in range(ROUNDS if len(found) > 1 else 0):
-        found = refitted(gauge, case, found, options, [options["speed_m_per_s"]] * len(found))
+        found = refitted(gauge, bodies, found, settings)
     return found
 
 
 def doubts_of_another(
-    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any]
+    gauge: Gauge, bodies: Bodies, fits: list[TipFit], settings: dict[str, Any]
 ) -> list[str]:
     """One where what the fits leave of the record is the passage of one more front, apart from theirs."""
     rest = gauge
     for fit in fits:
-        rest = without(rest, case, fit)
-    if not largest_change(rest, limiting_speed_m_per_s(case)):
+        rest = without(rest, bodies, fit)
+    if not largest_change(rest, bodies.limit_m_per_s):
         return []
-    other = fit_tip(rest, case, **options)
+    other = fit_tip(rest, bodies, **{**settings, "zone_m": 0.0})
     height_s = LEAST_APART * abs(gauge.y_m)
     if not other.has_tip or not all(
         f.has_tip and abs(other.tip_s - f.tip_s) * f.speed_m_per_s > height_s for f in fits
     ):
         return []
-    both = each_without_the_others(gauge, case, [*fits, other], options)
+    both = each_without_the_others(gauge, bodies, [*fits, other], {**settings, "zone_m": 0.0})
     if not all(
         f.has_tip
         and f.K_Pa_sqrt_m > 0
@@ -648,19 +904,16 @@ def doubts_of_another(
     return [f"fronts at {times} us explain more, with Gamma {Gammas} J/m2: give passages {len(both)}"]
 
 
-def refitted(
-    gauge: Gauge, case: _core.Case, fits: list[TipFit], options: dict[str, Any], speeds: list[Any]
-) -> list[TipFit]:
+def refitted(gauge: Gauge, bodies: Bodies, fits: list[TipFit], settings: dict[str, Any]) -> list[TipFit]:
     """Each tip again, about where it was, in the record without the others."""
     found = list(fits)
-    for k, speed in enumerate(speeds):
+    for k in range(len(found)):
         if not fits[k].has_tip:
             continue
         rest = gauge
         for other in found[:k] + found[k + 1 :]:
-            rest = without(rest, case, other)
-        known = {"speed_m_per_s": speed, "direction": fits[k].direction, "tip_s": fits[k].tip_s}
-        fit = fit_tip(rest, case, **{**options, **known})
+            rest = without(rest, bodies, other)
+        fit = fit_tip(rest, bodies, **{**settings, "direction": fits[k].direction, "tip_s": fits[k].tip_s})
         if not fit.has_tip:
             found[k] = fit
             continue
@@ -670,16 +923,15 @@ def refitted(
     return found
 
 
-def without(gauge: Gauge, case: _core.Case, fit: TipFit) -> Gauge:
+def without(gauge: Gauge, bodies: Bodies, fit: TipFit) -> Gauge:
     """The record less the field and the step of a tip."""
     if not fit.has_tip:
         return gauge
-    per_K, stepped = Tip(gauge, case, fit.direction, True, (0, 1)).shapes(
-        fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s))
-    )
+    tip = TipField(bodies, fit.speed_m_per_s, fit.direction, fit.cohesive_zone_m)
+    rows, steps = Record(gauge).shapes(tip, fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s)))
+    root = np.copysign(np.sqrt(fit.Gamma_J_per_m2), fit.strength_drop_Pa)
     less = {
-        part: fit.K_Pa_sqrt_m * of + fit.step[part] * step
-        for part, of, step in zip(fit.step, per_K, stepped, strict=True)
+        part: root * of + fit.step[part] * step for part, of, step in zip(fit.step, rows, steps, strict=True)
     }
     return gauge.changed(gauge.flat_s, values={part: v - less[part] for part, v in gauge.values.items()})
 
@@ -710,11 +962,10 @@ def of_same_front(every: list[list[TipFit]], own: list[TipFit], k: int) -> list[
     return [fits[order] for fits in of_way if len(fits) > order]
 
 
-def doubts_of_arrivals(every: list[list[TipFit]], case: _core.Case) -> list[list[list[str]]]:
+def doubts_of_arrivals(every: list[list[TipFit]], bodies: Bodies) -> list[list[list[str]]]:
     """Of each fit of each gauge: where the times of a front's tip at neighbouring gauges make a speed that is
-    not between those fitted there, or that no such tip has."""
+    not between those fitted there."""
     told: list[list[list[str]]] = [[[] for _ in own] for own in every]
-    limit, c_L = limiting_speed_m_per_s(case), case.wave_speeds.c_L_m_per_s
     places = {id(f): at for own, of in zip(every, told, strict=True) for f, at in zip(own, of, strict=True)}
     for own in every:
         for k, fit in enumerate(own):
@@ -722,13 +973,13 @@ def doubts_of_arrivals(every: list[list[TipFit]], case: _core.Case) -> list[list
             for other in ahead:
                 if other.x_m > min(f.x_m for f in ahead):
                     continue
-                doubt = doubt_of_arrivals(fit, other, limit, c_L)
+                doubt = doubt_of_arrivals(fit, other, bodies.c_L_m_per_s)
                 for each in (fit, other) if doubt else ():
                     places[id(each)].append(doubt)
     return told
 
 
-def doubt_of_arrivals(fit: TipFit, other: TipFit, limit: float, c_L: float) -> str:
+def doubt_of_arrivals(fit: TipFit, other: TipFit, c_L: float) -> str:
     """Of two gauges side by side; empty where there is none. Slownesses are compared: their errors are those
     of times."""
     apart_m = (other.x_m - fit.x_m) * fit.direction
@@ -740,38 +991,12 @@ def doubt_of_arrivals(fit: TipFit, other: TipFit, limit: float, c_L: float) -> s
     own_error = np.nan_to_num(near.speed_error_m_per_s) * own**2
     between = 1 / fast.speed_m_per_s <= slowness <= 1 / slow.speed_m_per_s
     differs = abs(slowness - own) > max(OTHER_SPEED * own, SEVERAL * float(np.hypot(error, own_error)))
-    if (between or not differs) and not slowness + SEVERAL * error < 1 / limit:
+    if between or not differs:
         return ""
     speed = f"{1 / slowness:.4g} m/s" if slowness > 0 else "a front the other way"
     above = f", above c_L, {c_L:.4g} m/s," if 0 < slowness < 1 / c_L else ""
-    or_fast = ", or the front is supershear" if 1 / c_L <= slowness < 1 / limit else ""
     return (
         f"the tip's times at {fit.gauge} and {other.gauge} make {speed}{above} where the fits have "
         f"V = {fit.speed_m_per_s:.4g} and {other.speed_m_per_s:.4g} m/s: check their clocks, places and "
-        f"heights y{or_fast}"
+        "heights y"
     )
-
-
-def speeds_between(every: list[list[TipFit]], own: list[TipFit]) -> list[float]:
-    """Of each fit of a gauge: the slope of the tips' times over x, by the parabola through three gauges side
-    by side, or the line through two."""
-    made = []
-    for k, fit in enumerate(own):
-        way = fit.direction
-        if not fit.has_tip:
-            made.append(np.nan)
-            continue
-        same = of_same_front(every, own, k)
-        x, first = np.unique([f.x_m for f in same], return_index=True)
-        if len(x) < 2:
-            raise CaseError(
-                f"gauge {fit.gauge}: speeds of gauges need two gauges of one front; give speed_m_per_s in m/s"
-            )
-        tips = np.array([f.tip_s for f in same])[first]
-        slowness = np.gradient(tips, x, edge_order=2 if len(x) > 2 else 1)[np.searchsorted(x, fit.x_m)]
-        if not slowness * way > 0:
-            raise CaseError(
-                f"gauge {fit.gauge}: its neighbours' tips do not follow one another: give speed_m_per_s, m/s"
-            )
-        made.append(float(way / slowness))
-    return made

@@ -18,6 +18,5 @@ void bind_fronts(nb::module_& module);
 void bind_fracture(nb::module_& module);
 void bind_passages(nb::module_& module);
 void bind_fits(nb::module_& module);
-void bind_gauges(nb::module_& module);
 
 }  // namespace slipfront::python

@@ -20,6 +20,7 @@
 #include "advice/outlook.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "fracture/tip.hpp"
 #include "input/schema.hpp"
 #include "interface/friction.hpp"
 #include "problem/source.hpp"
@@ -376,6 +377,12 @@ void bind_cases(nb::module_& module) {
           "every key with its value, as case.resolved.toml has it")
       .def_prop_ro(
           "wave_speeds", [](const C& c) { return solid::wave_speeds(c.config().material); }, "of the plate")
+      .def_prop_ro(
+          "limiting_speed_m_per_s",
+          [](const C& c) {
+            return fracture::limiting_speed_m_per_s(materials_of(problem::bodies_of(c.config())));
+          },
+          "at which a front that releases energy ends to be possible below the shear speeds")
       .def_prop_ro("static_coefficient",
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
       .def(
