@@ -349,6 +349,12 @@ class Case:
         """of the plate"""
 
     @property
+    def limiting_speed_m_per_s(self) -> float:
+        """
+        at which a front that releases energy ends to be possible below the shear speeds
+        """
+
+    @property
     def static_coefficient(self) -> float: ...
 
     def info(self) -> Info:
@@ -781,29 +787,6 @@ def ratio_at_equal_x(series: Sequence[tuple[Annotated[NDArray[numpy.float64], di
 
 def rank_correlation(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> float:
     """Spearman's."""
-
-class TipField:
-    """
-    Stress and strain near the tip of a front along +x or -x between a case's bodies, over the stress intensity factor K in Pa m^(1/2), which is positive where the body above slips to +x: docs/gauges.md. NaN from the limiting speed on.
-    """
-
-    def __init__(self, case: Case, speed_m_per_s: float, along_x: int) -> None: ...
-
-    def stress_per_K(self, x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
-        """xx, yy and xy at places from the tip [places]"""
-
-    def strain_per_K(self, x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
-        """
-        xx, yy and xy, half the engineering shear strain, at places from the tip [places]
-        """
-
-    @property
-    def energy_per_K2(self) -> float:
-        """energy release rate over K^2, J/m2"""
-
-    @property
-    def limiting_speed_m_per_s(self) -> float:
-        """up to which there is a field"""
 
 class Velocities:
     """Of a plate's nodes at a time."""

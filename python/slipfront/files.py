@@ -23,6 +23,7 @@ import numpy as np
 from slipfront.errors import Error
 from slipfront.errors import one_line as one_line
 
+HDF5_MARK = b"\x89HDF\r\n\x1a\n"  # at the beginning of a file
 ROWS = "rows"  # the data set of a file of rows whose numbers others show
 LARGEST_TEXT_BYTES = 2**30
 LARGEST_PACKING = 1032  # of deflate: no data set unpacks to more than so many times its bytes in the file

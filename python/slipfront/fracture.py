@@ -138,8 +138,8 @@ def predict_fronts(
 
 
 def case_of_bodies(given: OpenRun | CaseLike | _core.Case) -> _core.Case:
-    """The bodies of a run, a case, or a dictionary of its tables material and base, such as
-    {"material": {...}, "base": {"kind": "body", ...}}. Without base: the rigid plane. No size counts."""
+    """The bodies of a run, a case, or a dictionary of its tables material and base, such as {"material":
+    {...}, "base": {"kind": "rigid"}}. Without base: an equal body, as in a case. No size counts."""
     if isinstance(given, OpenRun):
         given = {name: table for name, table in given.case.items() if name in ("material", "base")}
     if isinstance(given, Mapping) and isinstance(base := given.get("base"), Mapping):

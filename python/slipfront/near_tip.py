@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stress and strain around the tip of a front that moves steadily, with a cohesive zone behind it.
 
-Mode II between equal half-spaces below the Rayleigh speed and above the shear speed, or of a half-space on the
-rigid plane below the shear speed. docs/gauges.md has formulas and sources."""
+Mode II between equal half-spaces below the Rayleigh speed and above the shear speed, or of a half-space on
+the rigid plane below the shear speed. docs/gauges.md has formulas and sources."""
 
 from __future__ import annotations
 
@@ -11,19 +11,24 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import quad
 from scipy.special import hyp2f1
 
 from slipfront import _core
+from slipfront.command import MATERIAL
 from slipfront.errors import CaseError
 from slipfront.fracture import case_of_bodies
+from slipfront.gauges import COMPONENTS
+from slipfront.given import array, flag, number, shown
 from slipfront.opened import OpenRun
 from slipfront.running import CaseLike
 
-#: How strength falls behind the tip: linearly over the distance, or over slip, as under linear slip weakening.
+#: How strength falls behind the tip: linearly over the distance, or over slip, as under linear slip
+#: weakening.
 ZONES = ("linear", "slip")
-#: The traction under linear slip weakening as sum of linear falls: their lengths over that of the whole, their
-#: shares; and its area, twice, which is X_c over the whole.
+#: The traction under linear slip weakening as sum of linear falls: their lengths over that of the whole,
+#: their shares; and its area, twice, which is X_c over the whole.
 SLIP_LENGTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0])
 SLIP_SHARES = np.array(
     [-0.02778542, -0.05154394, -0.07954356, -0.06436257, -0.02547388, 0.028537, 0.10082967, 1.12337482]
@@ -31,8 +36,8 @@ SLIP_SHARES = np.array(
 SLIP_SHARES /= SLIP_SHARES.sum()
 SLIP_AREA = float(SLIP_SHARES @ SLIP_LENGTHS)
 AT_REST = 1e-4  # of c_S: the field differs from that at rest by its square, and rounding by as much
-SERIES = [2 / ((2 * k + 1) * (2 * k + 3)) for k in range(12)]
-FAR = 5.0  # |z|/X, square root, from which on a series takes the place of a difference of large numbers
+SERIES = [2 / ((2 * k + 1) * (2 * k + 3)) for k in range(9)]
+FAR = 8.0  # |z|/X, square root, from which on a series takes the place of a difference of large numbers
 
 
 @dataclass(frozen=True)
@@ -73,16 +78,13 @@ def bodies_of(given: OpenRun | CaseLike | _core.Case | Bodies) -> Bodies:
     case = case_of_bodies(given)
     tables = tomllib.loads(case.toml)
     above, base = tables["material"], tables["base"]
-    own = [above[name] for name in ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")]
+    own, other = ([float(of.get(name, np.nan)) for name in MATERIAL] for of in (above, base))
     is_on_rigid = base["kind"] == "rigid"
-    if not is_on_rigid and not np.allclose(
-        own, [base[name] for name in ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")], 1e-6, 0
-    ):
+    if not is_on_rigid and not np.allclose(own, other, 1e-6, 0):
         raise CaseError("the bodies differ: the field is that of equal bodies or of one on a rigid plane")
-    waves = case.wave_speeds
-    return Bodies(
-        *own, above["plane"], is_on_rigid, waves.c_L_m_per_s, waves.c_S_m_per_s, case.limiting_speed_m_per_s
-    )
+    E, nu, rho = own
+    waves, limit = case.wave_speeds, case.limiting_speed_m_per_s
+    return Bodies(E, nu, rho, above["plane"], is_on_rigid, waves.c_L_m_per_s, waves.c_S_m_per_s, limit)
 
 
 def linear_fall(z: np.ndarray, X_m: float | np.ndarray, q: float) -> np.ndarray:
@@ -90,14 +92,15 @@ def linear_fall(z: np.ndarray, X_m: float | np.ndarray, q: float) -> np.ndarray:
 
     P(z), z = x + i a_d y: on the interface ahead P is the traction; behind, at y = 0+, Re P + cot(pi q) Im P
     is, and Im P goes with the slope of slip. Far away P is proportional to z^-q."""
+    z = z + 1e-12j * X_m  # above the cut behind the tip
     if q == 0.5:
         u = np.sqrt(z / X_m)
         far = np.abs(u) > FAR
-        near, beyond = np.where(far, 1.0, u), np.where(far, u, FAR)
-        closed = (1 + near**2) * np.log((near + 1j) / (near - 1j)) / 2j - near
-        series = np.polynomial.polynomial.polyval(-1 / beyond**2, SERIES) / beyond
-        return 2 / np.pi * np.where(far, series, closed)
-    z = z + 1e-12j * X_m  # above the cut behind the tip
+        near = np.where(far, 1.0, u)
+        found = (1 + near**2) * np.log((near + 1j) / (near - 1j)) / 2j - near
+        if far.any():
+            found[far] = np.polynomial.polynomial.polyval(-1 / u[far] ** 2, SERIES) / u[far]
+        return 2 / np.pi * found
     ratio = -X_m / z
     whole = hyp2f1(1, q, 1 + q, ratio) / q - hyp2f1(1, 1 + q, 2 + q, ratio) / (1 + q)
     return np.sin(np.pi * q) / np.pi * (X_m / z) ** q * whole
@@ -121,11 +124,11 @@ def fast_energies() -> np.polynomial.Chebyshev:
 class TipField:
     """The field of a tip at the origin, over the square root of its fracture energy.
 
-    Stress that adds to the state with the residual traction on the slipping side; traction positive on the body
-    above that slips to +x, whichever way the front runs. Equal bodies: xx and yy are odd in y.
+    Stress that adds to the state with the residual traction on the slipping side; traction positive on the
+    body above that slips to +x, whichever way the front runs. Equal bodies: xx and yy are odd in y.
 
-    zone_m: X_c, twice the area of (tau - tau_r)/(tau_p - tau_r) over the distance behind the tip; 0: a singular
-    tip, which above c_S has no energy."""
+    zone_m: X_c, twice the area of (tau - tau_r)/(tau_p - tau_r) over the distance behind the tip; 0: a
+    singular tip, which above c_S has no energy."""
 
     def __init__(
         self,
@@ -144,9 +147,9 @@ class TipField:
         self.a_s = np.sqrt(abs(1 - m2))
         self.s2 = 1 - m2
         self.q = 0.5
-        # u_x = phi_x + psi_y, u_y = phi_y - psi_x, phi = Re F(x + i a_d y), psi = Im G(x + i a_s y), in units of
-        # the shear modulus; f = F'' = -i f_ P, g = G'' = -i g_ P. Equal bodies have stress_yy = 0 at y = 0, the
-        # rigid plane u_y = 0. The slope of slip at the edge is -Im P/stiffness.
+        # u_x = phi_x + psi_y, u_y = phi_y - psi_x, phi = Re F(x + i a_d y), psi = Im G(x + i a_s y), in units
+        # of the shear modulus; f = F'' = -i f_ P, g = G'' = -i g_ P. Equal bodies have stress_yy = 0 at y =
+        # 0, the rigid plane u_y = 0. The slope of slip at the edge is -Im P/stiffness.
         if self.is_fast:  # psi = g(x + a_s y): waves that leave
             self.q = float(np.arctan2(4 * self.a_d * self.a_s, (2 - m2) ** 2) / np.pi)
             self.f, self.g = 1 / (2 * self.a_d), -(2 - m2) / (4 * self.a_d * self.a_s)
@@ -159,43 +162,42 @@ class TipField:
             self.f, self.g = 2 * self.a_s / rayleigh, -(2 - m2) / rayleigh
             self.stiffness_Pa = mu * rayleigh / (2 * m2 * self.a_s)
         #: K over the square root of Gamma, Pa m^(1/2) per (J/m2)^(1/2); NaN above c_S.
-        self.K_per_root = np.nan if self.is_fast else np.sqrt(4 * self.stiffness_Pa)
+        self.K_per_root = np.nan if self.is_fast else float(np.sqrt(4 * self.stiffness_Pa))
         self.zone_m = zone_m
         of_slip = zone == "slip" and not self.is_fast
         self.lengths = zone_m / SLIP_AREA * SLIP_LENGTHS if of_slip else np.array([zone_m])
         self.shares = SLIP_SHARES if of_slip else np.ones(1)
         if zone_m == 0:
-            self.drop_per_root = np.inf
+            self.drop_per_root = float(np.inf)
         elif not self.is_fast:  # K of each fall
-            self.drop_per_root = self.K_per_root / (
-                self.shares @ (4 / (3 * np.pi) * np.sqrt(2 * np.pi * self.lengths))
-            )
+            of_K = self.shares @ np.sqrt(self.lengths) * 4 / 3 * np.sqrt(2 / np.pi)
+            self.drop_per_root = self.K_per_root / float(of_K)
         else:
-            self.drop_per_root = np.sqrt(self.stiffness_Pa / (zone_m * energy_of_fall(self.q)))
+            self.drop_per_root = float(np.sqrt(self.stiffness_Pa / (zone_m * energy_of_fall(self.q))))
 
     def function(self, z: np.ndarray) -> np.ndarray:
         """The traction function P over the root of Gamma."""
         if self.zone_m == 0:
             return self.K_per_root / np.sqrt(2 * np.pi * z)
-        return self.drop_per_root * (self.shares @ linear_fall(z, self.lengths[:, None], self.q))
+        return self.drop_per_root * (
+            np.tensordot(self.shares, linear_fall(z, self.lengths[:, None, None], self.q), 1)
+        )
 
     def stress(self, x_m: np.ndarray, y_m: np.ndarray) -> np.ndarray:
-        """Pa over the root of Gamma [xx yy xy, places]; NaN below the rigid plane. y = -0.0 is the edge of the
-        body below."""
+        """Pa over the root of Gamma [xx yy xy, places]; NaN below the rigid plane. y = -0.0 is the edge of
+        the body below."""
         x, y = self.direction * np.asarray(x_m, float), np.abs(np.asarray(y_m, float))
         side = self.direction * np.copysign(1.0, y_m)
-        f = -1j * self.f * self.function(x + 1j * self.a_d * y)
         a_s, s2 = self.a_s, self.s2
-        if self.is_fast:
-            behind = self.function(x + a_s * y + 0j)
-            h = self.g * behind.imag * np.ones_like(x)
-            xx, yy = (1 - s2 + 2 * self.a_d**2) * f.real + 2 * a_s * h, -(1 + s2) * f.real - 2 * a_s * h
-            xy = -2 * self.a_d * f.imag - (1 + s2) * h
-        else:
-            g = -1j * self.g * self.function(x + 1j * a_s * y)
-            xx = (1 - s2 + 2 * self.a_d**2) * f.real + 2 * a_s * g.real
-            yy = -(1 + s2) * f.real - 2 * a_s * g.real
-            xy = -2 * self.a_d * f.imag - (1 + s2) * g.imag
+        # Above c_S the second potential is of the place along a wave that leaves, which is real.
+        at_s = x + a_s * y + 0j if self.is_fast else x + 1j * a_s * y
+        P, P_s = self.function(np.array([x + 1j * self.a_d * y, at_s]))
+        f = -1j * self.f * P
+        g = self.g * P_s.imag
+        g_i = g if self.is_fast else -self.g * P_s.real
+        xx = (1 - s2 + 2 * self.a_d**2) * f.real + 2 * a_s * g
+        yy = -(1 + s2) * f.real - 2 * a_s * g
+        xy = -2 * self.a_d * f.imag - (1 + s2) * g_i
         found = np.array([side * xx, side * yy, xy])
         if self.bodies.is_on_rigid:
             found[:, np.broadcast_to(np.signbit(y_m), x.shape)] = np.nan
@@ -221,8 +223,8 @@ def tip_field(
     """Strain, or stress in Pa, that the tip of a front along direction adds to the state with the residual
     traction: xx, yy, xy at places from the tip. The body above slips to +x. NaN below a rigid plane.
 
-    cohesive_zone_m: X_c behind the tip, 0 of a singular tip. zone: how the strength falls there, "linear" over
-    the distance or over "slip"; above c_S over the distance."""
+    cohesive_zone_m: X_c behind the tip, 0 of a singular tip. zone: how the strength falls there, "linear"
+    over the distance or over "slip"; above c_S over the distance."""
     of = bodies_of(bodies)
     V = number(speed_m_per_s, "speed_m_per_s", least=0, finite=True)
     X = number(cohesive_zone_m, "cohesive_zone_m", least=0, finite=True)

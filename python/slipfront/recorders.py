@@ -27,6 +27,7 @@ import pandas as pd
 
 from slipfront.channels import FORCES, VOLTAGES
 from slipfront.files import (
+    HDF5_MARK,
     LARGEST_PACKING,
     DataError,
     dataset,
@@ -38,7 +39,6 @@ from slipfront.files import (
 from slipfront.gauges import STRAINS
 from slipfront.onsets import LENGTHS, NEVER, PRESSURES, TIMES, WORDS, in_si, name_and_unit
 
-HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 AT_512 = 512  # where that of a .mat file of version 7.3 stands
 #: That are read, of HDF5: a damaged one of others can hold the library up.
 ATTRIBUTES = (

@@ -18,7 +18,7 @@ import numpy as np
 
 from slipfront import command
 from slipfront.channels import KINDS
-from slipfront.files import DataError, dataset, exists, open_hdf5
+from slipfront.files import HDF5_MARK, DataError, dataset, exists, open_file, open_hdf5
 from slipfront.gauges import COMPONENTS, Gauge, from_arms
 from slipfront.given import path
 
@@ -100,7 +100,11 @@ def gauge_of(name: str, channels: list[Channel]) -> Gauge:
     else:
         of = {c.kind.partition("_")[2]: v for c, v in zip(channels, made, strict=True)}
         values = {part: of[part] for part in COMPONENTS if part in of}
-    gauge = Gauge(name, x_m, y_m, time_s, values, is_strain, 0.0, places, tuple(doubts))
+    bandwidths = {c.bandwidth_Hz for c in channels if c.bandwidth_Hz == c.bandwidth_Hz}
+    if len(bandwidths) > 1:
+        doubts.append(f"its channels differ in bandwidth: fits take {min(bandwidths):g} Hz for all")
+    bandwidth_Hz = min(bandwidths, default=np.inf)
+    gauge = Gauge(name, x_m, y_m, time_s, values, is_strain, 0.0, places, tuple(doubts), bandwidth_Hz)
     return gauge.changed(flat_s)
 
 
@@ -150,6 +154,12 @@ class Writer:
         """What is known of an event when all of its channels are there."""
         told = {"event_time_s": event.time_s, "source_files": event.source, "notes": "\n".join(event.notes)}
         self.group(event.number).attrs.update(told)
+
+
+def is_records(file: Path) -> bool:
+    """Whether a file is one of HDF5, as records.nc is."""
+    with open_file(file) as stream:
+        return stream.read(len(HDF5_MARK)) == HDF5_MARK
 
 
 def require_own(file: Path) -> None:

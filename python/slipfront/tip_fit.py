@@ -42,11 +42,12 @@ LEAST_TIMES = 8
 #: this modulus bear more. Fronts change strains by 1e-5 to 1e-3: more, if these are numbers of percent.
 STIFF_STRAIN, STIFF_PA = 0.002, 1e9
 NORMAL_MEDIAN = 0.6745  # of the size of a normal variable, over its standard deviation
-ROUNDING = 1e-24  # of squares: a record that changes less is constant
-# Of least squares: the share of the square that a step is to take off it; other tolerances end nothing.
-LEAST_GAIN, LEAST = 1e-7, 1e-15
+#: Shares of squares: a record that changes less is constant; one of which less is left is explained.
+CONSTANT, ROUNDING = 1e-24, 1e-12
+#: Of least squares: the share of the square that a step is to take off it, along a profile and at its end;
+#: and other tolerances, which end nothing.
+PROFILE_GAIN, LEAST_GAIN, LEAST = 1e-5, 1e-7, 1e-15
 ROUNDS = 3  # of fits of several tips, each without the others
-LEAST_SQUARE = 0.25  # of a passage's record, over that of the largest
 #: Reach of a fit from the tip: so many heights of the gauge and cohesive zones.
 REACH_HEIGHTS, REACH_ZONES = 3.0, 2.0
 WINDOWS = 6  # of times, each for the zone that the one before has found
@@ -105,20 +106,23 @@ class Settings:
 
     def checked(self, bodies: Bodies, gauges: list[Gauge]) -> Settings:
         flag(self.step, "step")
-        made = replace(self)
-        for name, least in {"speed_m_per_s": 0, "zone_m": 0, "r_max_m": 0, "tip_s": None}.items():
-            if getattr(self, name) is not None:
-                value = number(getattr(self, name), name, least=least, finite=True)
-                made = replace(made, **{name: value})
+        made = replace(
+            self,
+            speed_m_per_s=number_or_none(self.speed_m_per_s, "speed_m_per_s", above=0),
+            zone_m=number_or_none(self.zone_m, "zone_m", least=0),
+            r_max_m=number_or_none(self.r_max_m, "r_max_m", above=0),
+            tip_s=number_or_none(self.tip_s, "tip_s"),
+        )
         if self.direction not in (None, 1, -1):
             raise CaseError(f"direction is {shown(self.direction)}; it must be 1, -1 or None")
         for gauge in gauges:
             if made.r_max_m is not None and not made.r_max_m > abs(gauge.y_m):
                 raise CaseError(
-                    f"gauge {gauge.name}: r_max_m is {made.r_max_m:g} m; it must be above the gauge's height, "
-                    f"{abs(gauge.y_m):g} m"
+                    f"gauge {gauge.name}: r_max_m is {made.r_max_m:g} m; it must be above the gauge's "
+                    f"height, {abs(gauge.y_m):g} m"
                 )
-        # At rest there is a field in any case; so a speed that is not given asks for no more than the zone's name.
+        # At rest there is a field in any case; so a speed that is not given asks for no more than the zone's
+        # name.
         require_field(bodies, made.speed_m_per_s or 0.0, made.zone_m, self.zone, "zone_m")
         return made
 
@@ -126,20 +130,26 @@ class Settings:
         return self.r_max_m or REACH_HEIGHTS * height_m + REACH_ZONES * zone_m
 
 
+def number_or_none(given: Any, name: str, **bounds: float) -> float | None:
+    return None if given is None else number(given, name, finite=True, **bounds)
+
+
 class Trial(NamedTuple):
     """How the model does at some parameters."""
 
-    square: float  # of the record about its means
-    left: float  # the share that the model leaves
+    signal: float  # the square that the field explains, over that left at one of the times
     slips_to_x: bool  # K is positive
 
 
+def trial_of(explained: float, left: float, square: float, n_times: int, slips_to_x: bool) -> Trial:
+    """square: of the record about its means; a record that does not change has no signal."""
+    return Trial(explained / max(left, ROUNDING * square) if square > 0 else 0.0, slips_to_x)
+
+
 def ranked(trials: list[Trial]) -> list[int]:
-    """Those where the record changes much, from the one that leaves least. Without xy both directions leave
-    the same: then slip to +x comes first."""
-    most = max((t.square for t in trials), default=0.0)
-    changing = [k for k, t in enumerate(trials) if t.square > LEAST_SQUARE * most]
-    return sorted(changing, key=lambda k: (round(trials[k].left, 9), not trials[k].slips_to_x))
+    """From the clearest one. Without xy both directions are alike: then slip to +x comes first."""
+    seen = [k for k, t in enumerate(trials) if t.signal > 0]
+    return sorted(seen, key=lambda k: (-round(np.log10(trials[k].signal), 6), not trials[k].slips_to_x))
 
 
 def squares(of: list[np.ndarray]) -> float:
@@ -175,7 +185,8 @@ class Record:
     def shapes(
         self, tip: TipField, speed: float, tip_s: float, at: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The field of each component or arm, and the step that goes with it, at these times. [parts, times]"""
+        """The field of each component or arm, and the step that goes with it, at these times. [parts,
+        times]"""
         time_s = self.time_s[at]
         if len(self.kernel) > 1:
             before = len(self.kernel) - 1 - self.n_to_come
@@ -204,10 +215,24 @@ class Record:
             columns.append(self.leaked[:, at].reshape(-1, 1))
         return np.hstack(columns)
 
+    def rest(self, of: list[np.ndarray], steps: np.ndarray | None, at: np.ndarray) -> np.ndarray:
+        """Rows [parts, times], one after the other, without what the levels can make of them. [..., parts,
+        times]"""
+        rows = np.array(of if self.leaked is None else [*of, self.leaked[:, at]])
+        rows = rows - rows.mean(axis=2, keepdims=True)
+        if steps is not None:
+            one = steps - steps.mean(axis=1, keepdims=True)
+            one /= np.maximum(np.sqrt((one**2).sum(axis=1, keepdims=True)), 1e-300)
+            rows -= (rows * one).sum(axis=2, keepdims=True) * one
+        if self.leaked is None:
+            return rows
+        *rest, leaked = rows
+        return np.array([row - ((row * leaked).sum() / (leaked**2).sum()) * leaked for row in rest])
+
 
 class Path(NamedTuple):
-    """When the tip passes the places x: times, s, and slownesses, s/m, are linear in the parameters, which are
-    times but for a last one, a slowness, where the speed is free."""
+    """When the tip passes the places x: times, s, and slownesses, s/m, are linear in the parameters, which
+    are times but for a last one, a slowness, where the speed is free."""
 
     of_times: np.ndarray  # [places, parameters]
     of_slowness: np.ndarray
@@ -216,8 +241,8 @@ class Path(NamedTuple):
 
 
 def path_of(x_m: np.ndarray, direction: int, speed_m_per_s: float | None, one_speed: bool) -> Path:
-    """A given speed; a free one, of one place or of all; or that of the tips' times along x: of two places the
-    line through them, of three the parabola, of more the cubic spline."""
+    """A given speed; a free one, of one place or of all; or that of the tips' times along x: of two places
+    the line through them, of three the parabola, of more the cubic spline."""
     n = len(x_m)
     if speed_m_per_s is not None:
         return Path(np.eye(n), np.zeros((n, n)), slowness=1 / speed_m_per_s)
@@ -225,11 +250,7 @@ def path_of(x_m: np.ndarray, direction: int, speed_m_per_s: float | None, one_sp
         along = direction * (x_m - x_m[0])
         return Path(np.column_stack([np.ones(n), along]), np.tile([0.0, 1.0], (n, 1)), is_free=True)
     each = np.eye(n)
-    if n > 3:
-        slopes = np.array([CubicSpline(x_m, row).derivative()(x_m) for row in each])
-    else:
-        slopes = np.array([np.gradient(row, x_m, edge_order=n - 1) for row in each])
-    return Path(each, direction * slopes.T)
+    return Path(each, direction * CubicSpline(x_m, each).derivative()(x_m))
 
 
 class Front:
@@ -278,11 +299,10 @@ class Front:
         made = []
         for r, tip, v, t, at in zip(self.records, self.fields(c, zone_m), speeds, tips, self.at, strict=True):
             rows, steps = r.shapes(tip, v, t, at)
-            q, _ = np.linalg.qr(r.levels(steps if self.settings.step else None, at))
-            both = np.column_stack([rows.ravel(), r.data[:, at].ravel()])
-            made.append(both - q @ (q.T @ both))
-        whole = np.concatenate(made)
-        return whole[:, 0], whole[:, 1]
+            rest = r.rest([rows, r.data[:, at]], steps if self.settings.step else None, at)
+            made.append(rest.reshape(2, -1))
+        shape, data = np.concatenate(made, axis=1)
+        return shape, data
 
     def residual(self, c: np.ndarray, zone_m: float) -> np.ndarray:
         """What the best Gamma leaves of the records."""
@@ -313,50 +333,56 @@ class Front:
 
     def trial(self, c: np.ndarray, zone_m: float) -> Trial:
         square = squares(self.changes())
-        if square <= ROUNDING * squares(self.data()):
-            return Trial(0.0, 1.0, False)
+        if square <= CONSTANT * squares(self.data()):
+            return Trial(0.0, False)
         shape, data = self.system(c, zone_m)
         along = float(shape @ data)
-        left = float(data @ data) - along**2 / float(shape @ shape)
-        return Trial(square, left / square, along > 0)
+        explained = along**2 / float(shape @ shape)
+        return trial_of(explained, float(data @ data) - explained, square, len(data), along > 0)
 
-    def nearest(self, c: np.ndarray, zone_m: float, free_zone: bool = False) -> tuple[np.ndarray, float]:
+    def nearest(
+        self, c: np.ndarray, zone_m: float, free_zone: bool = False, gain: float = LEAST_GAIN
+    ) -> tuple[np.ndarray, float]:
         """Parameters, and the zone where it is free, that leave least of the records at these times."""
         scale = self.scale(c)
 
+        def grown(u: np.ndarray) -> float:
+            return float(np.exp(np.clip(0.1 * u[-1], -5, 5)))
+
         def left(u: np.ndarray) -> np.ndarray:
-            return self.residual(
-                c + scale * u[: len(c)], zone_m * np.exp(0.1 * u[-1]) if free_zone else zone_m
-            )
+            return self.residual(c + scale * u[: len(c)], zone_m * grown(u) if free_zone else zone_m)
 
         start = np.zeros(len(c) + free_zone)
         if not np.isfinite(left(start)).all():
             return c, zone_m
         # Ended by what is gained alone: other tolerances are of numbers that are near 1.
-        u = least_squares(left, start, method="lm", ftol=LEAST_GAIN, xtol=LEAST, gtol=LEAST).x
-        return c + scale * u[: len(c)], zone_m * float(np.exp(0.1 * u[-1])) if free_zone else zone_m
+        u = least_squares(left, start, method="lm", ftol=gain, xtol=LEAST, gtol=LEAST).x
+        return c + scale * u[: len(c)], zone_m * grown(u) if free_zone else zone_m
 
 
 class Profile(NamedTuple):
-    """What is left of the records over the length of the cohesive zone, all else sought at each. Ascending."""
+    """What is left of the records over the length of the cohesive zone, all else sought at each.
+    Ascending."""
 
     zone_m: np.ndarray
     square: np.ndarray
-    Gamma: np.ndarray
+    others: np.ndarray  # the root of Gamma, and the parameters [zones, ...]
 
-    def ends(self, variance: float) -> list[tuple[float, float]]:
-        """Zone and Gamma at which the square is above the least one by the variance, on both sides; those at the
-        end of the range where it is not."""
+    def ends(self, variance: float) -> tuple[list[float], np.ndarray]:
+        """Zones at which the square is above the least one by the variance, on both sides, or where the range
+        ends; and the others there."""
         k = int(self.square.argmin())
         more = np.sqrt((self.square - self.square[k]) / variance)
-        found = []
+        zones, others = [], []
         for side in (np.arange(k, -1, -1), np.arange(k, len(more))):
             beyond = np.flatnonzero(more[side] > 1)
             last = int(beyond[0]) if beyond.size else len(side) - 1
             two = side[max(last - 1, 0) : last + 1]
-            at = tuple(float(np.interp(1.0, more[two], of[two])) for of in (self.zone_m, self.Gamma))
-            found.append((at[0], at[1]))
-        return found
+            share = np.interp(1.0, more[two], np.arange(len(two)))
+            at = two[0], two[-1]
+            zones.append(float((1 - share) * self.zone_m[at[0]] + share * self.zone_m[at[1]]))
+            others.append((1 - share) * self.others[at[0]] + share * self.others[at[1]])
+        return zones, np.array(others)
 
 
 def profile_of(front: Front, c: np.ndarray, zone_m: float) -> tuple[Profile, np.ndarray, float]:
@@ -366,13 +392,13 @@ def profile_of(front: Front, c: np.ndarray, zone_m: float) -> tuple[Profile, np.
     n = int(np.ceil(np.log(LONGEST * reach_m / (SHORTEST * height_m)) / np.log(RATIO)))
     lengths = SHORTEST * height_m * RATIO ** np.arange(n + 1)
     begin = int(np.abs(np.log(lengths / max(zone_m, lengths[0]))).argmin())
-    found: dict[float, tuple[float, float, np.ndarray]] = {}
+    found: dict[float, tuple[float, np.ndarray]] = {}
 
     def add(at_m: float, start: np.ndarray, free: bool = False) -> np.ndarray:
-        near, at_m = front.nearest(start, at_m, free)
+        near, at_m = front.nearest(start, at_m, free, LEAST_GAIN if free else PROFILE_GAIN)
         shape, data = front.system(near, at_m)
         root = float(shape @ data) / float(shape @ shape)
-        found[at_m] = float(((data - root * shape) ** 2).sum()), root**2, near
+        found[at_m] = float(((data - root * shape) ** 2).sum()), np.append(root, near)
         return near
 
     for side in (lengths[begin:], [*lengths[:begin][::-1], *([] if front.fast else [0.0])]):
@@ -381,14 +407,15 @@ def profile_of(front: Front, c: np.ndarray, zone_m: float) -> tuple[Profile, np.
             near = add(float(length), near)
     best = min(found, key=lambda length: found[length][0])
     if best > 0:
-        add(best, found[best][2], free=True)
+        add(best, found[best][1][1:], free=True)
     best = min(found, key=lambda length: found[length][0])
     for share in BESIDE:
-        add(share * best, found[best][2])
+        add(share * best, found[best][1][1:])
     best = min(found, key=lambda length: found[length][0])
     zones = np.array(sorted(found))
-    made = Profile(zones, *np.array([found[z][:2] for z in zones]).T)
-    return made, found[best][2], best
+    squares_left = np.array([found[z][0] for z in zones])
+    made = Profile(zones, squares_left, np.array([found[z][1] for z in zones]))
+    return made, found[best][1][1:], best
 
 
 class Fitted(NamedTuple):
@@ -403,12 +430,13 @@ def refined(front: Front, c: np.ndarray, zone_m: float) -> Fitted | None:
     given = front.settings.zone_m
     zone_m = zone_m if given is None else given
     for _ in range(WINDOWS):
-        before = front.at
         if not front.look(c, zone_m):
             return None
-        if before and all(np.array_equal(a, b) for a, b in zip(before, front.at, strict=True)):
-            break
+        before = front.at
         c, zone_m = front.nearest(c, zone_m, free_zone=given is None and zone_m > 0)
+        if front.look(c, zone_m) and all(np.array_equal(a, b) for a, b in zip(before, front.at, strict=True)):
+            break
+        front.at = before
     return Fitted(front, c, zone_m)
 
 
@@ -429,16 +457,15 @@ def profiled(found: Fitted) -> Fitted:
 
 
 def fit_tip(gauge: Gauge, bodies: OpenRun | CaseLike | _core.Case | Bodies, **settings: Any) -> TipFit:
-    """The field of the tip of a front fitted to a gauge's record: Gamma, the cohesive zone X_c, the speed, the
-    time of the tip, and of each component an offset and a step of the residual stress or strain.
+    """The field of the tip of a front fitted to a gauge's record: Gamma, the cohesive zone X_c, the speed,
+    the time of the tip, and of each component an offset and a step of the residual stress or strain.
 
     bodies: see bodies_of. Settings: speed_m_per_s, where it is known. direction: +1 or -1 along x, None: the
-    one that explains more. tip_s: about when the tip passes, None: where the field explains most. zone: how the
-    strength falls, "linear" over the distance from the tip, or over "slip". zone_m: X_c where it is known, 0: a
-    singular tip. r_max_m: how far from the tip the gauge is in the fit, by default 3 heights and 2 zones. step:
-    False: none.
-    Errors follow from the Jacobian, the scatter with the correlation of neighbouring residuals, and from what
-    lengths of the zone do as well. Raises CaseError."""
+    one that explains more. tip_s: about when the tip passes, None: where the field explains most. zone: how
+    the strength falls, "linear" over the distance from the tip, or over "slip". zone_m: X_c where it is
+    known, 0: a singular tip. r_max_m: how far from the tip the gauge is in the fit, by default 3 heights and
+    2 zones. step: False: none. Errors follow from the Jacobian, the scatter with the correlation of
+    neighbouring residuals, and from what lengths of the zone do as well. Raises CaseError."""
     instance(gauge, Gauge, "gauge")
     of = bodies_of(bodies)
     made = Settings(**settings).checked(of, [gauge])
@@ -454,7 +481,9 @@ def fit_tip(gauge: Gauge, bodies: OpenRun | CaseLike | _core.Case | Bodies, **se
     return fit
 
 
-def starts_of(gauge: Gauge, bodies: Bodies, settings: Settings) -> list[tuple[Trial, Front, np.ndarray, float]]:
+def starts_of(
+    gauge: Gauge, bodies: Bodies, settings: Settings
+) -> list[tuple[Trial, Front, np.ndarray, float]]:
     """The best time of the tip at each direction, speed and zone."""
     shares = zip(bodies.ranges_m_per_s(), (SHARES, FAST_SHARES), strict=False)
     speeds = [low + share * (high - low) for (low, high), of in shares for share in of]
@@ -464,8 +493,12 @@ def starts_of(gauge: Gauge, bodies: Bodies, settings: Settings) -> list[tuple[Tr
     ways = (1, -1) if settings.direction is None else (settings.direction,)
     found = []
     for way, V, zone_m in product(ways, speeds, zones):
-        fast = V > bodies.c_S_m_per_s
-        tips = times_of_tip(gauge, TipField(bodies, V, way, zone_m, settings.zone), V, settings) if zone_m or not fast else []
+        fast = bodies.c_S_m_per_s < V
+        tips = (
+            times_of_tip(gauge, TipField(bodies, V, way, zone_m, settings.zone), V, settings)
+            if zone_m or not fast
+            else []
+        )
         front = Front([gauge], bodies, settings, way, fast)
         for tip_s in tips:
             c = np.array([tip_s, 1 / V])[: front.path.of_times.shape[1]]
@@ -475,8 +508,8 @@ def starts_of(gauge: Gauge, bodies: Bodies, settings: Settings) -> list[tuple[Tr
 
 
 def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) -> list[float]:
-    """Where a field explains most of the record: on even times, as fine as the field asks for, whose values are
-    means about them. The record goes on as it ends."""
+    """Where a field explains most of the record: on even times, as fine as the field asks for, whose values
+    are means about them. The record goes on as it ends."""
     record = Record(gauge)
     reach_m = settings.reach_m(record.height_m, tip.zone_m)
     step_s = max(max(record.height_m, tip.zone_m / 4) / speed / FINE, record.step_s)
@@ -498,17 +531,28 @@ def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) 
     means = np.diff(integrals, axis=1) / step_s
     windows = np.lib.stride_tricks.sliding_window_view(means, 2 * n + 1, axis=1)  # [parts, tips, times]
     windows = windows.transpose(1, 0, 2).reshape(windows.shape[1], -1)
-    even = Gauge(gauge.name, gauge.x_m, gauge.y_m, step_s * np.arange(-n, n + 1.0), dict.fromkeys(record.parts, np.arange(2 * n + 1.0)), gauge.is_strain, gauge.smoothing_s, gauge.places_m, (), gauge.bandwidth_Hz)
+    even = Gauge(
+        gauge.name,
+        gauge.x_m,
+        gauge.y_m,
+        step_s * np.arange(-n, n + 1.0),
+        dict.fromkeys(record.parts, np.arange(2 * n + 1.0)),
+        gauge.is_strain,
+        gauge.smoothing_s,
+        gauge.places_m,
+        (),
+        gauge.bandwidth_Hz,
+    )
     model, at = Record(even), np.arange(2 * n + 1)
     rows, steps = model.shapes(tip, speed, 0.0, at)
     levels = np.repeat(np.eye(len(rows)), len(at), axis=0) / np.sqrt(len(at))
+    shape = model.rest([rows], steps if settings.step else None, at).ravel()
     changes = (windows**2).sum(axis=1) - ((windows @ levels) ** 2).sum(axis=1)
     q, _ = np.linalg.qr(model.levels(steps if settings.step else None, at))
-    shape = rows.ravel() - q @ (q.T @ rows.ravel())
-    left = (windows**2).sum(axis=1) - ((windows @ q) ** 2).sum(axis=1) - (windows @ shape) ** 2 / (shape @ shape)
-    share = np.where(changes > LEAST_SQUARE * changes.max(), left / np.maximum(changes, 1e-300), np.inf)
-    best = int(share.argmin())
-    return [float(ends[0] + step_s * best)]
+    explained = (windows @ shape) ** 2 / (shape @ shape)
+    left = (windows**2).sum(axis=1) - ((windows @ q) ** 2).sum(axis=1) - explained
+    left = np.maximum(left, np.maximum(ROUNDING * changes, CONSTANT * (windows**2).sum(axis=1).max()))
+    return [float(ends[0] + step_s * int((explained / np.maximum(left, 1e-300)).argmax()))]
 
 
 def sought(gauge: Gauge, bodies: Bodies, settings: Settings) -> TipFit:
@@ -519,8 +563,8 @@ def sought(gauge: Gauge, bodies: Bodies, settings: Settings) -> TipFit:
     order = ranked([f.front.trial(f.c, f.zone_m) for f in fits])
     if not order:
         few = (
-            f"fewer than {LEAST_TIMES} times are in reach of a tip: give a larger r_max_m, or check the units of "
-            "y and time"
+            f"fewer than {LEAST_TIMES} times are in reach of a tip: give a larger r_max_m, or check the "
+            "units of y and time"
         )
         doubts = beyond({"limiting_speed_m_per_s": bodies.limit_m_per_s})
         return no_tip(gauge, few, f"nothing changes, or {few}", doubts, bodies)
@@ -565,19 +609,22 @@ def estimate(found: Fitted) -> Estimate:
     size = np.linalg.norm(jacobian, axis=0)
     size[size == 0] = 1
     covariance = variance * np.linalg.pinv((jacobian / size).T @ (jacobian / size)) / np.outer(size, size)
-    Gamma, Gamma_error = root**2, 2 * abs(root) * float(np.sqrt(covariance[0, 0]))
-    zones, instead = (1.0, 1.0, 1.0), "" if given.speed_m_per_s else ": give speed_m_per_s"
+    zones, instead = (float(zone_m > 0),) * 3, "" if given.speed_m_per_s else ": give speed_m_per_s"
     is_open = False
     if profile is not None:
-        (low, Gamma_low), (high, Gamma_high) = profile.ends(variance)
+        (low, high), others = profile.ends(variance)
         zones = (1.0, low / zone_m, high / zone_m) if zone_m > 0 else (0.0, low, high)
-        spread, is_open = 0.5 * abs(Gamma_high - Gamma_low), high >= profile.zone_m[-1]
-        Gamma_error = float(np.hypot(Gamma_error, spread))
-        if spread > 0.5 * Gamma_error:
+        traded = 0.5 * (others[1] - others[0])  # what the zone makes of the others
+        is_open = high >= profile.zone_m[-1]
+        if traded[0] ** 2 > covariance[0, 0]:
+            from_to = " to ".join(f"{root**2:.3g}" for root in others[:, 0])
+            zone = f"{1e3 * low:.3g} to {1e3 * high:.3g} mm{' and more' if is_open else ''}"
             instead = (
-                f": a cohesive zone of {1e3 * low:.3g} to {1e3 * high:.3g} mm{' and more' if is_open else ''} does "
-                f"as well, with {Gamma_low:.3g} to {Gamma_high:.3g} J/m2: give zone_m, or gauges nearer and farther"
+                f": a cohesive zone of {zone} does as well, with {from_to} J/m2: give zone_m, or gauges "
+                "nearer and farther together"
             )
+        covariance = covariance + np.outer(traded, traded)
+    Gamma, Gamma_error = root**2, 2 * abs(root) * float(np.sqrt(covariance[0, 0]))
 
     doubts = beyond({"limiting_speed_m_per_s": bodies.limit_m_per_s, "Gamma_J_per_m2": Gamma})
     of_all = float(np.sqrt(squares(left) / max(squares(front.changes()), 1e-300)))
@@ -628,14 +675,14 @@ def of_gauge(
     if shared.signal < LEAST_SIGNAL:
         return no_tip(
             gauge,
-            f"a tip's field fits by {shared.signal:.1f} errors, {LEAST_SIGNAL} are needed: give speed_m_per_s, or "
-            "more gauges together",
+            f"a tip's field fits by {shared.signal:.1f} errors, {LEAST_SIGNAL} are needed: give "
+            "speed_m_per_s, or more gauges together",
             "no change stands out of the noise; if you see one, check the units of y and time",
             doubts,
             bodies,
         )
     doubts += flat_tops_within(gauge, time_s[0], time_s[-1])
-    doubts += high_pass_that_explains_more(front, record, shared, tip_s, speed, tip.zone_m, left)
+    doubts += high_pass_that_explains_more(front, record, shared, tip, tip_s, speed, at, left)
     gap_s = float(np.diff(record.time_s[at[0] : at[-1] + 1]).max())
     if gap_s * speed > max(record.height_m, tip.zone_m):
         doubts.append(
@@ -657,8 +704,9 @@ def of_gauge(
     residual = np.sqrt((left**2).mean(axis=1) / np.maximum((about_mean**2).mean(axis=1), 1e-300))
     zone_m, low_m, high_m = (z * (tip.zone_m or 1.0) for z in shared.zones)
     return TipFit(
-        gauge=gauge.name, x_m=gauge.x_m, y_m=gauge.y_m, together=len(front.records), direction=front.direction,
-        tip_s=tip_s, tip_error_s=float(np.sqrt(of_time @ shared.of_c @ of_time)), speed_m_per_s=speed,
+        gauge=gauge.name, x_m=gauge.x_m, y_m=gauge.y_m, together=len(front.records),
+        direction=front.direction, tip_s=tip_s,
+        tip_error_s=float(np.sqrt(of_time @ shared.of_c @ of_time)), speed_m_per_s=speed,
         speed_error_m_per_s=np.nan if given.speed_m_per_s else speed_error,
         K_Pa_sqrt_m=shared.root * tip.K_per_root, Gamma_J_per_m2=shared.root**2,
         Gamma_error_J_per_m2=shared.Gamma_error_J_per_m2, cohesive_zone_m=zone_m, zone_low_m=low_m,
@@ -671,55 +719,43 @@ def of_gauge(
 
 
 def high_pass_that_explains_more(
-    front: Front,
-    record: Record,
-    shared: Estimate,
-    tip_s: float,
-    speed: float,
-    zone_m: float,
+    front: Front, record: Record, shared: Estimate, tip: TipField, tip_s: float, speed: float, at: np.ndarray,
     left: np.ndarray,
-) -> list[str]:
-    """A doubt where an amplifier that lets no constant pass, which the fit does not know, would leave LEAST_SIGNAL
-    errors less of a record and make Gamma two errors another one."""
-    alone = Front(
-        [record.gauge],
-        front.bodies,
-        replace(front.settings, speed_m_per_s=speed),
-        front.direction,
-        front.fast,
-    )
-    (own,) = alone.records
+) -> list[str]:  # fmt: skip
+    """A doubt where an amplifier that lets no constant pass, which the fit does not know, would leave
+    LEAST_SIGNAL errors less of a record and make Gamma two errors another one."""
+    alone = Front([record.gauge], front.bodies, front.settings, front.direction, front.fast)
+    (own,), alone.at = alone.records, [at]
     own.leaked = cumulative_trapezoid(own.data, own.time_s, initial=0)
-    if not alone.look(np.array([tip_s]), zone_m):
-        return []
-    c, zone_m = alone.nearest(np.array([tip_s]), zone_m)
+    start = np.array([tip_s, 1 / speed])[: alone.path.of_times.shape[1]]
+    c, zone_m = alone.nearest(start, tip.zone_m, free_zone=tip.zone_m > 0)
     shape, data = alone.system(c, zone_m)
     root = float(shape @ data) / float(shape @ shape)
     (less,) = alone.split(data - root * shape)
     variance = squares([less]) / max(less.size / correlated(less) - 10, 1)
-    rows, steps = own.shapes(alone.fields(c, zone_m)[0], speed, float(c[0]), alone.at[0])
-    levels = own.levels(steps, alone.at[0])
-    linear = np.linalg.lstsq(levels, (alone.data()[0] - root * rows).ravel(), rcond=None)[0]
+    tips, speeds = alone.times_and_speeds(c)
+    rows, steps = own.shapes(alone.fields(c, zone_m)[0], speeds[0], tips[0], at)
+    levels = own.levels(steps if front.settings.step else None, at)
+    linear = np.linalg.lstsq(levels, (own.data[:, at] - root * rows).ravel(), rcond=None)[0]
     cut_off = -float(linear[-1]) / (2 * np.pi)
     if (
         cut_off > 0
-        and left.shape == less.shape
         and squares([left]) - squares([less]) > LEAST_SIGNAL**2 * variance
         and abs(root**2 - shared.root**2) > 2 * shared.Gamma_error_J_per_m2
     ):
         return [
-            f"a high-pass of {cut_off:.2g} Hz, as of an amplifier, explains more, and makes Gamma {root**2:.3g} J/m2"
+            f"a high-pass of {cut_off:.2g} Hz, as of an amplifier, explains more, and makes Gamma "
+            f"{root**2:.3g} J/m2"
         ]
     return []
 
 
 def no_tip(gauge: Gauge, why: str, unchanged: str, doubts: list[str], bodies: Bodies) -> TipFit:
-    nan = np.nan
     change = largest_change(gauge, bodies.limit_m_per_s)
     said = f"no tip is found, though {change}: {why}" if change else f"no front passes: {unchanged}"
     return TipFit(
-        gauge.name, gauge.x_m, gauge.y_m, 1, 0, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, {}, {}, {},
-        nan, 0, [said, *flat_tops_within(gauge, -np.inf, np.inf), *doubts, *gauge.doubts], np.empty(0), {},
+        gauge.name, gauge.x_m, gauge.y_m, 1, 0, *(np.nan,) * 11, {}, {}, {}, np.nan, 0,
+        [said, *flat_tops_within(gauge, -np.inf, np.inf), *doubts, *gauge.doubts], np.empty(0), {},
     )  # fmt: skip
 
 
@@ -780,8 +816,8 @@ def fit_tips(
     """fit_tip of each gauge and each of so many passages of fronts, in the order of time. Doubts of it, too:
     one more passage, and the times of the tip at the gauges beside it, which make another speed.
 
-    settings: of fit_tip. Of one passage, the order of arrivals at the gauges beside it gives a direction that a
-    record does not tell by xy with xx or yy."""
+    settings: of fit_tip. Of one passage, the order of arrivals at the gauges beside it gives a direction that
+    a record does not tell by xy with xx or yy."""
     of, n = bodies_of(bodies), whole(passages, "passages", least=1)
     given = some_gauges(gauges)
     found = [passing(gauge, of, n, settings) for gauge in given]
@@ -810,8 +846,9 @@ def fit_front(
     **settings: Any,
 ) -> list[TipFit]:
     """The field of one front fitted to all gauges together: one Gamma and one tau_p - tau_r, with which X_c
-    changes with the speed; offsets and steps of each. The speed is that of the tip's times along x, by the line
-    through two places, the parabola through three, the cubic spline through more; or one_speed of all; or given.
+    changes with the speed; offsets and steps of each. The speed is that of the tip's times along x, by the
+    line through two places, the parabola through three, the cubic spline through more; or one_speed of all;
+    or given.
 
     alone: fit_tips of the gauges; those without a tip, or in the other direction than most, are left out.
     settings: of fit_tip. Raises CaseError where no front passes two gauges or more, one after the other."""

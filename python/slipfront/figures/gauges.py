@@ -16,13 +16,15 @@ from slipfront.gauges import COMPONENTS, Beside, Gauge
 from slipfront.opened import OpenRun
 from slipfront.tip_fit import TipFit
 
-MEASURED, MODEL = "0.55", "#d55e00"
+MEASURED, MODEL, TOGETHER = "0.55", "#d55e00", "#0072b2"
 MOST_ROWS = 8
 AROUND = 1.5  # of the fit's duration that is shown
 
 
 def rows_of_panels(
-    gauges: list[Gauge], draw: Callable[[int, int, Axes, str, float], str], labels: tuple[str, str]
+    gauges: list[Gauge],
+    draw: Callable[[int, int, Axes, str, float], str],
+    labels: tuple[tuple[str, str], ...],
 ) -> Drawing:
     """A row per gauge, a column per component; draw(row, k, axes, part, factor) returns the row's title."""
     parts = [part for part in COMPONENTS if any(part in gauge.values for gauge in gauges)]
@@ -45,33 +47,41 @@ def rows_of_panels(
                 ax.set_title(title, loc="left")
             if row == n - 1:
                 ax.set_xlabel("$t$ (µs)")
-    lines = [Line2D([], [], color=c, label=label) for c, label in zip((MEASURED, MODEL), labels, strict=True)]
-    style.legend_below(figure, lines, 2)
+    style.legend_below(figure, [Line2D([], [], color=c, label=label) for c, label in labels], len(labels))
     return Drawing("gauges", figure, "")
 
 
-def draw_fits(gauges: list[Gauge], fits: list[TipFit]) -> Drawing:
-    by_name = {gauge.name: gauge for gauge in gauges}
-    fits = [fit for fit in fits if fit.has_tip]
-    if not fits:
+def draw_fits(events: list[tuple[str, list[Gauge], list[TipFit]]]) -> Drawing:
+    """What stands before an event's lines, its gauges, and their fits, alone and together."""
+    shown = [
+        (head, next(g for g in gauges if g.name == fit.gauge), fit, fits)
+        for head, gauges, fits in events
+        for fit in fits
+        if fit.has_tip and fit.together == 1
+    ]
+    if not shown:
         raise CaseError("no front passes any of the gauges: there is no fit to draw")
 
     def draw(row: int, k: int, ax: Axes, part: str, factor: float) -> str:
-        fit = fits[row]
-        gauge = by_name[fit.gauge]
+        head, gauge, fit, fits = shown[row]
         half_s = AROUND * max(fit.tip_s - fit.time_s[0], fit.time_s[-1] - fit.tip_s)
         near = np.abs(gauge.time_s - fit.tip_s) <= half_s
         ax.plot(1e6 * gauge.time_s[near], factor * gauge.values[part][near], color=MEASURED)
-        gaps = np.flatnonzero(np.diff(fit.time_s) > 1.5 * np.median(np.diff(fit.time_s))) + 1
-        time_s, model = (np.insert(a, gaps, np.nan) for a in (fit.time_s, fit.fitted[part]))
-        ax.plot(1e6 * time_s, factor * model, color=MODEL)
+        together = [f for f in fits if f.gauge == fit.gauge and f.together > 1]
+        for each, color in zip((fit, *together), (MODEL, TOGETHER), strict=False):
+            gaps = np.flatnonzero(np.diff(each.time_s) > 1.5 * np.median(np.diff(each.time_s))) + 1
+            time_s, model = (np.insert(a, gaps, np.nan) for a in (each.time_s, each.fitted[part]))
+            ax.plot(1e6 * time_s, factor * model, color=color, dashes=(3, 1) if each.together > 1 else ())
         ax.axvline(1e6 * fit.tip_s, **style.REFERENCE)
         return (
-            f"{plain(fit.gauge)}, $x$ = {1e3 * fit.x_m:.4g} mm: $\\Gamma$ = {fit.Gamma_J_per_m2:.2f} ± "
-            f"{fit.Gamma_error_J_per_m2:.2f} J/m², $V$ = {fit.speed_m_per_s:.0f} m/s"
+            f"{head}{plain(fit.gauge)}, $x$ = {1e3 * fit.x_m:.4g} mm: $\\Gamma$ = {fit.Gamma_J_per_m2:.3g} ± "
+            f"{fit.Gamma_error_J_per_m2:.2g} J/m², $V$ = {fit.speed_m_per_s:.0f} m/s"
         )
 
-    return rows_of_panels([by_name[fit.gauge] for fit in fits], draw, ("record", "field of a tip"))
+    labels = ((MEASURED, "record"), (MODEL, "field of a tip, fitted to the gauge"))
+    is_joint = any(fit.together > 1 for _, _, _, fits in shown for fit in fits)
+    more = ((TOGETHER, "fitted to all gauges together"),) if is_joint else ()
+    return rows_of_panels([gauge for _, gauge, _, _ in shown], draw, labels + more)
 
 
 def draw_comparison(gauges: list[Gauge], run: OpenRun, shift_s: float) -> Drawing:
@@ -91,4 +101,4 @@ def draw_comparison(gauges: list[Gauge], run: OpenRun, shift_s: float) -> Drawin
         )
         return f"{plain(beside.gauge.name)}, $x$ = {1e3 * beside.gauge.x_m:.4g} mm: misfit {misfit}"
 
-    return rows_of_panels([b.gauge for b in besides], draw, ("record", "run"))
+    return rows_of_panels([b.gauge for b in besides], draw, ((MEASURED, "record"), (MODEL, "run")))
