@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import slipfront
+from slipfront.near_tip import ZONES
 from slipfront.pages import table, with_tables
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "gauges.md"
@@ -107,17 +108,20 @@ def row_of(name: str, run: slipfront.OpenRun, gauges: list[slipfront.Gauge]) -> 
     V, Gamma, zone = np.array([known(run, gauge.x_m) for gauge in gauges]).T
     alone = slipfront.fit_tips(gauges, run, direction=1)
     of_each = np.array([fit.Gamma_J_per_m2 for fit in alone]) / Gamma
-    linear, by_slip = (
-        slipfront.fit_front(gauges, run, alone=alone, direction=1, zone=zone) for zone in ("linear", "slip")
-    )
-    zones = [np.median([fit.cohesive_zone_m for fit in fits]) / np.median(zone) for fits in (linear, by_slip)]
+    together = []
+    for kind in ZONES:
+        try:
+            fits = slipfront.fit_front(gauges, run, alone=alone, direction=1, zone=kind)
+        except slipfront.CaseError:
+            together.append("refused")
+            continue
+        of_zone = np.median([fit.cohesive_zone_m for fit in fits]) / np.median(zone)
+        together.append(f"{fits[0].Gamma_J_per_m2 / Gamma.mean():.2f}, {of_zone:.2f}")
     share = V / WAVES.c_R_m_per_s
     return [
         name, f"{1e3 * np.median(zone):.2g}", f"{share.min():.2f} to {share.max():.2f}",
         f"{1e3 * abs(gauges[0].y_m):.2g}",
-        f"{np.nanmedian(of_each):.2f}, {np.nanmin(of_each):.2f} to {np.nanmax(of_each):.2f}",
-        f"{linear[0].Gamma_J_per_m2 / Gamma.mean():.2f}, {zones[0]:.2f}",
-        f"{by_slip[0].Gamma_J_per_m2 / Gamma.mean():.2f}, {zones[1]:.2f}",
+        f"{np.nanmedian(of_each):.2f}, {np.nanmin(of_each):.2f} to {np.nanmax(of_each):.2f}", *together,
     ]  # fmt: skip
 
 

@@ -137,13 +137,8 @@ def number_or_none(given: Any, name: str, **bounds: float) -> float | None:
 class Trial(NamedTuple):
     """How the model does at some parameters."""
 
-    signal: float  # the square that the field explains, over that left at one of the times
+    signal: float  # the root of Gamma over its error, squared, the parameters given
     slips_to_x: bool  # K is positive
-
-
-def trial_of(explained: float, left: float, square: float, n_times: int, slips_to_x: bool) -> Trial:
-    """square: of the record about its means; a record that does not change has no signal."""
-    return Trial(explained / max(left, ROUNDING * square) if square > 0 else 0.0, slips_to_x)
 
 
 def ranked(trials: list[Trial]) -> list[int]:
@@ -331,14 +326,20 @@ class Front:
             scale[-1] = 0.1 / min(speeds)
         return scale
 
+    def n_columns(self, c: np.ndarray) -> int:
+        """Parameters of the model, linear ones among them."""
+        return sum(len(r.parts) * (1 + self.settings.step) for r in self.records) + len(c) + 1
+
     def trial(self, c: np.ndarray, zone_m: float) -> Trial:
         square = squares(self.changes())
-        if square <= CONSTANT * squares(self.data()):
+        if square <= CONSTANT * squares(self.data()):  # of a record that does not change
             return Trial(0.0, False)
         shape, data = self.system(c, zone_m)
-        along = float(shape @ data)
-        explained = along**2 / float(shape @ shape)
-        return trial_of(explained, float(data @ data) - explained, square, len(data), along > 0)
+        root = float(shape @ data) / float(shape @ shape)
+        left = self.split(data - root * shape)
+        n_apart = sum(a.size / correlated(a) for a in left) - self.n_columns(c)
+        explained, of_left = root**2 * float(shape @ shape), max(squares(left), ROUNDING * square)
+        return Trial(explained / of_left * max(n_apart, 1), root > 0)
 
     def nearest(
         self, c: np.ndarray, zone_m: float, free_zone: bool = False, gain: float = LEAST_GAIN
@@ -485,7 +486,8 @@ def starts_of(
     gauge: Gauge, bodies: Bodies, settings: Settings
 ) -> list[tuple[Trial, Front, np.ndarray, float]]:
     """The best time of the tip at each direction, speed and zone."""
-    shares = zip(bodies.ranges_m_per_s(), (SHARES, FAST_SHARES), strict=False)
+    ranges = bodies.ranges_m_per_s()[: len(gauge.parts)]  # one component does not tell a V above c_S
+    shares = zip(ranges, (SHARES, FAST_SHARES), strict=False)
     speeds = [low + share * (high - low) for (low, high), of in shares for share in of]
     if settings.speed_m_per_s is not None:
         speeds = [settings.speed_m_per_s]
