@@ -22,6 +22,7 @@ PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3"
 DAMPING = {"stiffness_damping_s": 0.01e-6}
 HEIGHTS_M = (0.5e-3, 1e-3, 3.5e-3, 10e-3)
 P_PA, MU_K = 5e6, 0.3
+LEAST_WAY = 4  # heights that a front has run from its patch when it comes to a gauge
 FAST = 0.9  # of c_R, from which on the field lags behind a front that speeds up
 WAVES = slipfront.wave_speeds(**PMMA)
 
@@ -75,7 +76,7 @@ def problems(folder: Path) -> dict[str, dict[str, Any]]:
     rupture = (0.1, 0.12, 0.14, 0.16, 0.18)
     return {
         "rupture, d_c = 0.6 um": case(
-            0.16, 0.06, 0.125e-3, 1.75e6, 140e-6, (0.06, 0.065, 0.07, 0.09, 0.11, 0.13),
+            0.16, 0.06, 0.125e-3, 1.75e6, 140e-6, (0.062, 0.066, 0.07, 0.09, 0.11, 0.13),
             **from_patch(0.04, 12e-3, 0.6e-6),
         ),
         "rupture, d_c = 2.2 um": case(
@@ -102,6 +103,14 @@ def known(run: slipfront.OpenRun, x_m: float) -> tuple[float, float, float]:
     V = 1 / np.polyfit(near.x_m.to_numpy(), near.onset_s.to_numpy(), 1)[0]
     Gamma, weakens_s = (float(near[n].median()) for n in ("breakdown_work_J_per_m2", "weakening_time_s"))
     return float(V), Gamma, float(V) * weakens_s
+
+
+def begins_m(given: dict[str, Any]) -> float:
+    """Where the front begins: the end of its patch; of a driven one the edge."""
+    patch = given["nucleation"]
+    return (
+        0.0 if patch["form"] == "forced" else float(patch["x_m"] + patch["half_length_m"] + patch["taper_m"])
+    )
 
 
 def row_of(name: str, run: slipfront.OpenRun, gauges: list[slipfront.Gauge]) -> list[str]:
@@ -138,7 +147,7 @@ def main() -> None:
         gauges = slipfront.gauges_of(run)
         for fast in (False, True):
             for y_m in sorted({gauge.y_m for gauge in gauges}):
-                own = [g for g in gauges if g.y_m == y_m]
+                own = [g for g in gauges if g.y_m == y_m and g.x_m - begins_m(given) > LEAST_WAY * y_m]
                 own = [g for g in own if (known(run, g.x_m)[0] > FAST * WAVES.c_R_m_per_s) == fast]
                 if len(own) > 2:
                     rows.append(row_of(name, run, own))

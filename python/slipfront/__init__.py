@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from slipfront.measures import rank_correlation as rank_correlation
     from slipfront.measures import ratio_at_equal_x as ratio_at_equal_x
     from slipfront.measures import spread_at_equal_x as spread_at_equal_x
+    from slipfront.near_tip import tip_field as tip_field
     from slipfront.onsets import read_onsets as read_onsets
     from slipfront.opened import OpenRun as OpenRun
     from slipfront.opened_sequence import OpenSequence as OpenSequence

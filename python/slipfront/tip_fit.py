@@ -430,14 +430,16 @@ def refined(front: Front, c: np.ndarray, zone_m: float) -> Fitted | None:
     """The nearest fit, whose times follow the tip and the zone; None where these are too few."""
     given = front.settings.zone_m
     zone_m = zone_m if given is None else given
+    if not front.look(c, zone_m):
+        return None
     for _ in range(WINDOWS):
-        if not front.look(c, zone_m):
-            return None
         before = front.at
         c, zone_m = front.nearest(c, zone_m, free_zone=given is None and zone_m > 0)
-        if front.look(c, zone_m) and all(np.array_equal(a, b) for a, b in zip(before, front.at, strict=True)):
+        if not front.look(c, zone_m):
+            front.at = before
             break
-        front.at = before
+        if all(np.array_equal(a, b) for a, b in zip(before, front.at, strict=True)):
+            break
     return Fitted(front, c, zone_m)
 
 

@@ -80,7 +80,7 @@ def test_man_finds_nothing_to_warn_of(page):
 
 def test_completion_of_commands(complete):
     assert complete("slipfront", "") == {*COMMANDS, *PYTHON_COMMANDS}
-    assert complete("slipfront", "re") == {"report"}
+    assert complete("slipfront", "rep") == {"report"}
     assert complete("slipfront", "study", "") == set(STUDIES)
     assert complete("slipfront", "study", "co") == {"convergence"}
 

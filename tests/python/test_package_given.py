@@ -272,4 +272,4 @@ def test_speeds_are_printed_with_names_values_and_units():
 def test_no_result_is_printed_as_an_address():
     results = [found for found in vars(_core).values() if isinstance(found, type)]
     plain = [kind.__name__ for kind in results if kind.__repr__ is object.__repr__]
-    assert plain == ["FrontOptions", "TipField", "Batch", "ResultFolder"]  # of no function of the package
+    assert plain == ["FrontOptions", "Batch", "ResultFolder"]  # of no function of the package
