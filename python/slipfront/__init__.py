@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
     from slipfront.other_codes import read_sem2dpack as read_sem2dpack
     from slipfront.other_codes import read_uguca as read_uguca
+    from slipfront.picks import pick_events as pick_events
     from slipfront.records import Channel as Channel
     from slipfront.records import Event as Event
     from slipfront.records import read_records as read_records
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from slipfront.running import version as version
     from slipfront.running import wave_speeds as wave_speeds
     from slipfront.running import well_posedness as well_posedness
+    from slipfront.stretches import speed_stretches as speed_stretches
     from slipfront.tip_fit import TipFit as TipFit
     from slipfront.tip_fit import fit_tip as fit_tip
     from slipfront.tip_fit import fit_tips as fit_tips
@@ -94,8 +96,10 @@ _NAMES = {
     "opened": "OpenRun",
     "opened_sequence": "OpenSequence open",
     "other_codes": "read_seissol_fault_receivers read_sem2dpack read_uguca",
+    "picks": "pick_events",
     "records": "Channel Event read_records",
     "running": "case info resume run run_with_law stable_step_s version wave_speeds well_posedness",
+    "stretches": "speed_stretches",
     "tip_fit": "TipFit fit_tip fit_tips tip_field",
 }
 _PLACES = {name: module for module, names in _NAMES.items() for name in names.split()}

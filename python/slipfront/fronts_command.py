@@ -345,7 +345,9 @@ def settings_in_words(found: list[Found]) -> str:
         low, high = f"{min(values):.4g}", f"{max(values):.4g}"
         return low if low == high else f"{low} to {high}"
 
-    used = {name: words([of.fronts.attrs[name] for of in found]) for name in (*LENGTHS_AND_TIMES, "time_step_s")}
+    used = {
+        name: words([of.fronts.attrs[name] for of in found]) for name in (*LENGTHS_AND_TIMES, "time_step_s")
+    }
     step = used.pop("time_step_s")
     told = ", ".join(f"{name} {text}" for name, text in used.items())
     return told + (f"; intervals of speeds: times right to half of {step} s" if step != "0" else "")
@@ -362,7 +364,9 @@ def summary(found: list[Found], of_waves: dict[str, float]) -> list[str]:
     told = []
     for of in found:
         notes, lines = notes_and_lines(of, of_waves)
-        kind = of.stretches.attrs["type"] or ("" if any("no fronts" in note for note in notes) else "no fronts")
+        kind = of.stretches.attrs["type"] or (
+            "" if any("no fronts" in note for note in notes) else "no fronts"
+        )
         told.append(f"event {of.event}: " + "; ".join(part for part in (kind, *lines, *notes) if part))
     return [in_words(line) for line in [*told, settings_in_words(found)]]
 

@@ -262,7 +262,9 @@ def errors_of(place_m: float | None, time_s: ArrayLike | None, n: int) -> Errors
     if time_s is None or np.ndim(time_s) == 0:
         one = 0.0 if time_s is None else number(time_s, "time_error_s", least=0, finite=True)
         if not (place or one):
-            raise CaseError("place_error_m and time_error_s are both 0: give one of them above it, or neither")
+            raise CaseError(
+                "place_error_m and time_error_s are both 0: give one of them above it, or neither"
+            )
         return place, np.full(n, one)
     each = array(time_s, "time_error_s", finite=True)
     if len(each) != n or not (each > 0).all():

@@ -191,7 +191,7 @@ def mat_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray
 
 
 def at_places(
-    file: Path, column: str, read: dict[str, np.ndarray], is_of_events: bool
+    file: Any, column: str, read: dict[str, np.ndarray], is_of_events: bool
 ) -> tuple[np.ndarray, list[str]]:
     """Rows in the order of their places, those of a file of events in any; of several at one place that with
     the least error."""
@@ -212,6 +212,36 @@ def at_places(
     return order[is_first], [f"{n} more at a place that has one: that with the least error counts"]
 
 
+def record_of(
+    where: Any, column: str, read: dict[str, np.ndarray], doubts: np.ndarray, is_of_events: bool,
+    never_slipped: float | str | None, unit: str,
+) -> tuple[dict[str, np.ndarray], list[str]]:  # fmt: skip
+    """Columns of one event in the order of its places, and notes."""
+    order, notes = at_places(where, column, read, is_of_events)
+    of = {quantity: values[order] for quantity, values in read.items()}
+    of["onset_s"], told = without_marks(of["onset_s"], never_slipped, unit)
+    if "error_s" in of:
+        of["error_s"] = known_errors(where, of["error_s"])
+        if np.isnan(of["error_s"]).all():
+            del of["error_s"]
+    if n_doubts := int((doubts[order] != "").sum()):
+        told.append(f"{n_places(n_doubts)} with a doubt on the onset")
+    return of, [*told, *notes]
+
+
+def records_of_events(
+    where: Any, read: dict[str, np.ndarray], event: np.ndarray, doubts: np.ndarray
+) -> dict[int | None, xr.Dataset]:
+    """Records in SI units, by their events."""
+    made: dict[int | None, xr.Dataset] = {}
+    for k in np.unique(event):
+        own = {quantity: values[event == k] for quantity, values in read.items()}
+        of, notes = record_of(where, "x_m", own, doubts[event == k], True, NONE, "s")
+        variables = {quantity: ("node", values, attributes(quantity)) for quantity, values in of.items()}
+        made[int(k)] = xr.Dataset(variables, attrs={"notes": notes})
+    return made
+
+
 def read_each(
     file: Path, never_slipped: float | str | None = None, event: int | None = None
 ) -> dict[int | None, xr.Dataset]:
@@ -226,41 +256,34 @@ def read_each(
     lengths = {len(values) for values in read.values()}
     require(len(lengths) == 1, file, "its columns differ in length")
     n = len(read["x_m"])
+    require(n > 0, file, "fewer than two rows")
     numbered = read.pop("event", None)
     if numbered is None and event is not None:
         raise DataError(f"{file}: has no column 'event'; leave the event out")
-    if numbered is not None and not (np.isin(numbered % 1, 0) & (numbered >= 0)).all():
+    if numbered is not None and not ((numbered % 1 == 0) & (numbered >= 0)).all():
         raise DataError(f"{file}: column 'event' holds what is no whole number from 0")
     own = np.full(n, -1) if numbered is None else numbered.astype(np.int64)
     if event is not None and event not in own:
         raise DataError(f"{file}: has no event {event}; it has {', '.join(map(str, np.unique(own)))}")
     doubts = np.array([""] * n if is_mat else texts_of(file, "doubt"), dtype=np.str_)
-    require(n > 0, file, "fewer than two rows")
     unit = name_and_unit(chosen["onset_s"][0])[1]
     made: dict[int | None, xr.Dataset] = {}
     for k in np.unique(own) if event is None else (event,):
-        of = {quantity: values[own == k] for quantity, values in read.items()}
-        order, notes = at_places(file, chosen["x_m"][0], of, numbered is not None)
-        of = {quantity: values[order] for quantity, values in of.items()}
-        of["onset_s"], told = without_marks(of["onset_s"], never_slipped, unit)
-        if "error_s" in of:
-            of["error_s"] = known_errors(file, of["error_s"])
-            if np.isnan(of["error_s"]).all():
-                del of["error_s"]
-        if n_doubts := int((doubts[own == k][order] != "").sum()):
-            told.append(f"{n_places(n_doubts)} with a doubt on the onset, see {file.name}")
+        rows = {quantity: values[own == k] for quantity, values in read.items()}
+        of, notes = record_of(file, chosen["x_m"][0], rows, doubts[own == k], numbered is not None,
+                              never_slipped, unit)  # fmt: skip
         if numbered is None:
-            require(len(order) >= 2, file, "fewer than two rows")
+            require(len(of["x_m"]) >= 2, file, "fewer than two rows")
             require(bool(np.isfinite(of["onset_s"]).any()), file, "no row has a time: nothing slips")
         variables = {
             quantity: ("node", in_si(values, chosen[quantity][1]), attributes(quantity))
             for quantity, values in of.items()
         }
-        made[None if numbered is None else int(k)] = xr.Dataset(variables, attrs={"notes": [*told, *notes]})
+        made[None if numbered is None else int(k)] = xr.Dataset(variables, attrs={"notes": notes})
     return made
 
 
-def known_errors(file: Path, error: np.ndarray) -> np.ndarray:
+def known_errors(file: Any, error: np.ndarray) -> np.ndarray:
     """What is missing is the median of the others."""
     known = error[np.isfinite(error)]
     require(bool((known > 0).all()), file, "holds an error of a time that is not above 0")

@@ -140,8 +140,9 @@ def speed_stretches(
 
     Returns a Dataset over `stretch`: front, direction, x_from_m, x_to_m in the order of travel, onsets on
     its line, speed_m_per_s with its interval, as find_fronts has it, and wait_s, the time from the line of
-    the stretch before to its own midway between both; and over `point`, as the fronts: stretch_of_point. Its attribute `type` says where the
-    fronts come from: "from the left", "from the right", "from both ends", "from inside" to both sides."""
+    the stretch before to its own midway between both; and over `point`, as the fronts: stretch_of_point.
+    Its attribute `type` says where the fronts come from: "from the left", "from the right",
+    "from both ends", "from inside" to both sides."""
     instance(fronts, xr.Dataset, "fronts")
     if "time_step_s" not in fronts.attrs:
         raise CaseError("fronts are not those of find_fronts: their steps of time are not known")
