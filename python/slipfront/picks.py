@@ -346,7 +346,10 @@ def pick(trace: Trace, by: str, times_noise: float = TIMES_NOISE) -> Onset | str
 def kind_of(kinds: set[str], by: str | None, kind: str | None) -> str | None:
     """Of the traces that are picked, the best that an event has."""
     wanted = kind or OF_KIND.get(by or "")
-    return next((k for k in KINDS if k in kinds and wanted in (None, k)), None)
+    return next(
+        (k for k in KINDS if k in kinds and wanted in (None, k) and not (k == "shear" and by == "kurtosis")),
+        None,
+    )
 
 
 def checked(by: str | None, kind: str | None) -> None:
@@ -357,6 +360,8 @@ def checked(by: str | None, kind: str | None) -> None:
         raise CaseError(
             f"by is {by}, which picks {WORDS[OF_KIND[by]]}; kind is {kind}: leave one of them out"
         )
+    if by == "kurtosis" and kind == "shear":
+        raise CaseError("by is kurtosis, which picks what begins suddenly; shear rises long before a tip")
 
 
 def pick_events(
@@ -369,9 +374,9 @@ def pick_events(
 ) -> xr.Dataset:
     """Onsets in the traces of events, those of `read_records` or `read_recorders` (docs/picks.md).
 
-    by: "peak" of shear strain or stress, "threshold", "aic", "kurtosis", or "area", the steepest fall of
-    contact area; by default what suits the kind. kind: of the traces that are picked, "shear",
-    "contact_area", "slip", "strain", "acceleration"; by default the first of these that an event has.
+    by: "peak" of shear strain or stress, "threshold", "aic", "kurtosis" of all but shear, or "area", the
+    steepest fall of contact area; by default what suits the kind. kind: of the traces that are picked:
+    "shear", "contact_area", "slip", "strain", "acceleration"; by default the first that an event has.
     times_noise: that a trace must stand out of its noise, and the threshold. quiet_s: a pair of times since
     the event's between which nothing happens; by default the first half of what is before the event, of a
     record without that the first tenth.

@@ -139,10 +139,10 @@ def speed_stretches(
     place_error_m, time_error_s: as find_fronts has them; time_error_s may be that of each of its nodes.
 
     Returns a Dataset over `stretch`: front, direction, x_from_m, x_to_m in the order of travel, onsets on
-    its line, speed_m_per_s with its interval, as find_fronts has it, and wait_s, the time from the line of
-    the stretch before to its own midway between both; and over `point`, as the fronts: stretch_of_point.
-    Its attribute `type` says where the fronts come from: "from the left", "from the right",
-    "from both ends", "from inside" to both sides."""
+    its line, speed_m_per_s with its interval, as find_fronts has it, at_m and at_s, a point of the line,
+    and wait_s, the time from the line of the stretch before to its own midway between both; and over
+    `point`, as the fronts: stretch_of_point. Its attribute `type` says where the fronts come from: "from the
+    left", "from the right", "from both ends", "from inside" to both sides."""
     instance(fronts, xr.Dataset, "fronts")
     if "time_step_s" not in fronts.attrs:
         raise CaseError("fronts are not those of find_fronts: their steps of time are not known")
@@ -168,16 +168,21 @@ def speed_stretches(
             stop = part.stop if k == len(ends) - 2 else points[-1] + 1
             of_point[begin:stop] = len(rows)
             speed, low, high = speed_of(fronts, points, step_s, errors)
-            line = onsets.between(first, end)
-            now = float(line.run_m.mean()), float(line.onset_s.mean()), 1 / speed
+            own_errors = errors and errors[1][node[points]]
+            weight = None if own_errors is None or not own_errors.all() else own_errors**-2
+            at_m = at_s = np.nan
+            if len(points):
+                at_m, at_s = (float(np.average(v[points], weights=weight)) for v in (x, onset))
+            slowness = float(fronts["direction"][front]) / speed
             wait_s = np.nan
             if before is not None:
-                middle = (onsets.run_m[first - 1] + onsets.run_m[first]) / 2
-                wait_s = np.diff([t + (middle - at_m) * slow for at_m, t, slow in (before, now)])[0]
-            before = now
-            rows.append((front, x[begin], x[stop - 1], end - first, speed, low, high, wait_s))
+                middle = (x[at[first - 1]] + x[at[first]]) / 2
+                ends_s = [t + (middle - m) * slow for m, t, slow in (before, (at_m, at_s, slowness))]
+                wait_s = ends_s[1] - ends_s[0]
+            before = at_m, at_s, slowness
+            rows.append((front, x[begin], x[stop - 1], end - first, speed, low, high, wait_s, at_m, at_s))
     names = ("front", "x_from_m", "x_to_m", "onsets", "speed_m_per_s", "speed_low_m_per_s",
-             "speed_high_m_per_s", "wait_s")  # fmt: skip
+             "speed_high_m_per_s", "wait_s", "at_m", "at_s")  # fmt: skip
     columns = dict(zip(names, np.array(rows, dtype=float).reshape(-1, len(names)).T, strict=True))
     made = {name: v.astype(np.int64) if name in ("front", "onsets") else v for name, v in columns.items()}
     made["direction"] = fronts["direction"].to_numpy()[made["front"]]

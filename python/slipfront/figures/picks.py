@@ -57,20 +57,19 @@ def draw_lines(ax: Axes, picks: xr.Dataset, of_time: float, of_place: float) -> 
         speed, way = float(of["speed_m_per_s"]), int(of["direction"])
         if not np.isfinite(speed):
             continue
-        x, onset = fronts["x_m"].to_numpy()[at], fronts["onset_s"].to_numpy()[at]
-        ends = np.array([x.min(), x.max()])
-        time_s = onset.mean() + way * (ends - x.mean()) / speed
+        x = fronts["x_m"].to_numpy()[at]
+        middle = len(x) // 2
+        # The label is amid two traces.
+        places = np.array([x.min(), x.max(), (x[middle - 1] + x[middle]) / 2])
+        time_s = float(of["at_s"]) + way * (places - float(of["at_m"])) / speed
         ax.plot(
-            of_time * time_s, of_place * ends, color=style.DIRECTION_COLOURS[way], linewidth=1.2, zorder=3,
-            path_effects=style.outlined("white", 2.4), gid=f"stretch {k}",
+            of_time * time_s[:2], of_place * places[:2], color=style.DIRECTION_COLOURS[way],
+            linewidth=1.2, zorder=3, path_effects=style.outlined("white", 2.4), gid=f"stretch {k}",
         )  # fmt: skip
         low, high = float(of["speed_low_m_per_s"]), float(of["speed_high_m_per_s"])
         interval = f" ({low:.3g} to {high:.3g})" if np.isfinite(high) else ""
-        middle = len(x) // 2
-        between = (x[middle - 1] + x[middle]) / 2  # amid two traces
-        at_s = onset.mean() + way * (between - x.mean()) / speed
         ax.annotate(
-            f"{speed:.3g} m/s{interval}", (of_time * at_s, of_place * between), xytext=(-5, 0),
+            f"{speed:.3g} m/s{interval}", (of_time * time_s[2], of_place * places[2]), xytext=(-5, 0),
             textcoords="offset points", va="center", ha="right", color=style.DIRECTION_COLOURS[way], zorder=4,
             path_effects=style.outlined("white", 2.4),
         )  # fmt: skip
