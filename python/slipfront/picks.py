@@ -31,8 +31,8 @@ WORDS = {
 TIMES_NOISE = 5.0  # that a trace must stand out of its noise
 HOLD = 5  # samples that a trace stays above the threshold
 LEAST = 10  # samples of the quiet part
-ABOUT = 0.1  # of a top's height, down to which a parabola goes
-STILL = 0.01  # of a top's height, that noise may be where it is sought
+#: Of a top, in noises and in its height: how far below it a parabola goes.
+BELOW, SHALLOW, DEEP = 4.0, 0.02, 0.15
 OUT = 3.0  # standard errors beyond which a slope counts
 NO_NOISE = 1e-6  # of a trace's range: numbers of a computation have rounding
 GAUSSIAN, SUDDEN = 3.0, 3.0  # kurtosis of noise; times that in the quiet part, beyond it, that counts
@@ -148,43 +148,52 @@ def smoothed(values: np.ndarray, width: int) -> np.ndarray:
     return (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
 
 
-def top_of(
-    time_s: np.ndarray, values: np.ndarray, noise: float, top: int, height: float
-) -> tuple[Onset, float, float]:
-    """Of the parabola through the samples about a top, down to a tenth of its height below it, and the first
-    and last times of these. Where the noise would hide that, means over some samples decide which they are.
-
-    The error is that of the parabola's top by the noise, or by the scatter about it where this is more, and
-    of half a sample."""
-    step_s = float(np.median(np.diff(time_s)))
-    width = 2 * min(int((noise / (STILL * height)) ** 2 / 2), len(values) // 20) + 1
-    if width > 1:
-        shown = smoothed(values, width)
-        near = slice(max(top - width, 0), top + width + 1)
-        top = near.start + int(np.argmax(shown[near]))
-    else:
-        shown = values
-    below = shown < shown[top] - ABOUT * height
+def about_top(values: np.ndarray, noise: float, top: int) -> tuple[int, int, int]:
+    """The sample at a top, the first one about it and the end of them: down to 4 times the noise below it, at
+    least 2 and at most 15 % of its height. Where that is less than the noise needs, means over some samples
+    decide."""
+    depth = float(np.clip(BELOW * noise, SHALLOW * values[top], DEEP * values[top]))
+    width = 2 * min(int((BELOW * noise / depth) ** 2 / 2), len(values) // 20) + 1
+    shown = smoothed(values, width)
+    near = slice(max(top - width, 0), top + width + 1)
+    top = near.start + int(np.argmax(shown[near]))
+    below = shown < shown[top] - depth
     first = int(np.flatnonzero(below[:top])[-1]) + 1 if below[:top].any() else 0
     end = top + int(np.flatnonzero(below[top:])[0]) if below[top:].any() else len(values)
-    first, end = max(min(first, top - 1), 0), min(max(end, top + 2), len(values))
+    return top, max(min(first, top - 2), 0), min(max(end, top + 3), len(values))
+
+
+def top_of(time_s: np.ndarray, values: np.ndarray, noise: float, top: int) -> tuple[Onset, float, float]:
+    """Of the parabola through the samples about a top, and the first and last times of these.
+
+    The error is that of the parabola's top by the noise, or by the scatter about it where this is more; how
+    far a cubic moves the top, since tops are uneven; and half a sample."""
+    step_s = float(np.median(np.diff(time_s)))
+    top, first, end = about_top(values, noise, top)
     t, w = time_s[first:end] - time_s[top], values[first:end]
-    half_s = max(t[-1] - t[0], step_s) / 2
-    wide = Onset(float(time_s[top]), half_s, "its top is no parabola")
-    if len(t) < 3:
-        return wide, float(time_s[first]), float(time_s[end - 1])
-    u = t / half_s
-    design = np.stack([u**2, u, np.ones_like(u)], axis=1)
-    (a, b, _), *_ = np.linalg.lstsq(design, w, rcond=None)
-    at = -b / (2 * a) if a < 0 else np.inf
-    if not u[0] <= at <= u[-1]:
-        return wide, float(time_s[first]), float(time_s[end - 1])
-    rest = w - design @ np.linalg.lstsq(design, w, rcond=None)[0]
+    ends_s = float(time_s[first]), float(time_s[end - 1])
+    half_s = max(float(t[-1] - t[0]), step_s) / 2
+    made = None
+    if len(t) > 2:
+        u = t / half_s
+        design = np.stack([u**2, u, np.ones_like(u)], axis=1)
+        (a, b, c), *_ = np.linalg.lstsq(design, w, rcond=None)
+        if a < 0 and u[0] <= -b / (2 * a) <= u[-1]:
+            made = -b / (2 * a)
+    if made is None:
+        return Onset(float(time_s[top]), half_s, "its top is no parabola"), *ends_s
+    rest = w - design @ [a, b, c]
     scatter = max(noise, float(np.sqrt(rest @ rest / (len(t) - 3))) if len(t) > 3 else 0.0)
     gradient = np.array([b / (2 * a**2), -1 / (2 * a), 0.0])
     error = scatter * float(np.sqrt(gradient @ np.linalg.inv(design.T @ design) @ gradient))
-    made = Onset(float(time_s[top] + at * half_s), float(np.hypot(min(error, 1.0) * half_s, step_s / 2)))
-    return made, float(time_s[first]), float(time_s[end - 1])
+    moved = 0.0
+    if len(t) > 4:
+        slopes = np.polyder(np.polyfit(u, w, 3))
+        bend = np.polyder(slopes)
+        tops = [r.real for r in np.roots(slopes) if abs(r.imag) < 1e-9 and np.polyval(bend, r.real) < 0]
+        moved = min((abs(r - made) for r in tops), default=1.0)
+    error_s = half_s * min(float(np.hypot(error, moved)), 1.0)
+    return Onset(float(time_s[top] + made * half_s), float(np.hypot(error_s, step_s / 2))), *ends_s
 
 
 def top_before_fall(trace: Trace, times_noise: float) -> tuple[int, int] | None:
@@ -193,7 +202,8 @@ def top_before_fall(trace: Trace, times_noise: float) -> tuple[int, int] | None:
     for sign in (1, -1):
         w = sign * trace.values
         first, last = largest_fall(w)
-        if w[first] > times_noise * trace.noise:
+        least = times_noise * trace.noise
+        if w[first] > least and w[first] - w[last] > 2 * least:  # noise alone falls by some 8 times itself
             found.append((float(w[first] - w[last]), first, sign))
     return max(found)[1:] if found else None
 
@@ -204,10 +214,7 @@ def peak(trace: Trace, times_noise: float) -> Onset | str:
     if found is None:
         return f"no value before a fall stands {times_noise:g} times the noise out"
     top, sign = found
-    if top == len(trace.values) - 1:
-        return "its largest value is the last one"
-    values = sign * trace.values
-    made, first_s, last_s = top_of(trace.time_s, values, trace.noise, top, float(values[top]))
+    made, first_s, last_s = top_of(trace.time_s, sign * trace.values, trace.noise, top)
     if flat := trace.flat_within(first_s, last_s):
         half_s = (flat[1] - flat[0]) / 2
         return Onset(flat[0] + half_s, float(np.hypot(half_s, trace.step_s / 2)), "its top was cut off")
@@ -317,9 +324,9 @@ def area(trace: Trace, times_noise: float) -> Onset | str:
         if slopes[top] > TIMES_NOISE * error or 2 * width >= min(last - first + 1, n // 2):
             break
         width = 2 * width + 1
+    made, *_ = top_of(trace.time_s[at], slopes, error, top)
     # Slopes of lines that share samples err together.
-    made, *_ = top_of(trace.time_s[at], slopes, error * float(np.sqrt(width)), top, float(slopes[top]))
-    return made
+    return made._replace(error_s=made.error_s * float(np.sqrt(width)))
 
 
 METHODS: Mapping[str, Callable[[Trace, float], Onset | str]] = {

@@ -81,7 +81,8 @@ def work(options: argparse.Namespace) -> list[str]:
     )
     notes = picks.attrs["notes"]
     if not picks.sizes["pick"]:
-        raise DataError(f"{options.records}: nothing is picked: {notes[-1] if notes else 'no events'}")
+        why = command.in_options(notes[-1], OPTIONS) if notes else "no events"
+        raise DataError(f"{options.records}: nothing is picked: {why}")
     lines = [
         line_of_event(int(number), picks.isel(pick=picks["event"].to_numpy() == number))
         for number in np.unique(picks["event"].to_numpy())
