@@ -14,7 +14,7 @@ import xarray as xr
 from slipfront.cutting import line_through
 from slipfront.errors import CaseError
 from slipfront.gauges import Gauge, from_arms
-from slipfront.given import instance, number, shown
+from slipfront.given import in_order, instance, number, shown
 from slipfront.onsets import records_of_events
 from slipfront.records import Channel, Event
 from slipfront.units import attributes
@@ -393,10 +393,12 @@ def pick_events(
     checked(by, kind)
     least = number(times_noise, "times_noise", above=0, finite=True)
     if quiet_s is not None:
-        first, last = (number(end, "quiet_s") for end in quiet_s)
-        if not first < last:
-            raise CaseError(f"quiet_s is {first:g} to {last:g} s; give a pair of times that ascend")
-        quiet_s = first, last
+        pair = [number(end, "quiet_s") for end in in_order(quiet_s, "quiet_s", "a pair of times in s")]
+        if len(pair) != 2 or not pair[0] < pair[1]:
+            raise CaseError(f"quiet_s is {shown(quiet_s)}; it must be a pair of times in s that ascend")
+        quiet_s = pair[0], pair[1]
+    if not isinstance(events, Iterable):
+        raise CaseError(f"events is {shown(events)}; it must be a list of events")
     rows: list[tuple[int, str, float, float, float, float, str, str]] = []
     picked: Counter[tuple[str, str]] = Counter()
     left: Counter[str] = Counter()

@@ -263,10 +263,12 @@ def test_other_parts_are_quiet_where_they_are_given():
         ({"by": "area", "kind": "slip"}, "by is area, which picks contact area; kind is slip: leave one"),
         ({"by": "kurtosis", "kind": "shear"}, "by is kurtosis, which picks what begins suddenly"),
         ({"times_noise": 0}, "times_noise is 0; it must be above 0"),
-        ({"quiet_s": (1, 0)}, "quiet_s is 1 to 0 s; give a pair of times that ascend"),
+        ({"quiet_s": (1, 0)}, r"quiet_s is \(1, 0\); it must be a pair of times in s that ascend"),
     ],
 )
 def test_wrong_arguments(both, options, why):
+    with pytest.raises(slipfront.CaseError, match="events is None; it must be a list of events"):
+        slipfront.pick_events(None)
     with pytest.raises(slipfront.CaseError, match=why):
         slipfront.pick_events(both, **options)
 
