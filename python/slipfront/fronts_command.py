@@ -205,7 +205,8 @@ def found_in(options: argparse.Namespace, notes: list[str]) -> Iterator[Found]:
         if n >= 2:
             yield find(file, event, record, options)
         elif len(known) == 1:
-            raise DataError(f"{file}: {n_places(n)} with an onset, from {first:g} to {last:g} m: no front")
+            where = f" from {first:g} to {last:g} m" if options.x_range else ""
+            raise DataError(f"{file}: {n_places(n)} with an onset{where}: no front")
         else:
             notes.append(f"event {event}: no fronts: {n_places(n)} with an onset")
 

@@ -16,7 +16,7 @@ from slipfront.errors import CaseError
 from slipfront.gauges import Gauge, from_arms
 from slipfront.given import in_order, instance, number, shown
 from slipfront.onsets import records_of_events
-from slipfront.records import Channel, Event
+from slipfront.records import Channel, Event, gauge_of
 from slipfront.units import attributes
 
 #: What a trace is of, the best for onsets first, and how it is picked where nothing else is said.
@@ -47,7 +47,7 @@ class Onset(NamedTuple):
 
 @dataclass(frozen=True)
 class Trace:
-    """What is picked: its quiet part about 0."""
+    """What is picked: its quiet part about 0, over its largest number."""
 
     kind: str
     name: str
@@ -79,6 +79,9 @@ def trace_of(
     time_s, values = time_s[known], values[known]
     if not len(values):
         return "has no values"
+    if not np.ptp(values) > 0:
+        return "is the same number throughout"
+    values = values / np.abs(values).max()
     if quiet_s is not None:
         quiet = (time_s >= quiet_s[0]) & (time_s <= quiet_s[1])
     else:
@@ -90,8 +93,6 @@ def trace_of(
     line = slope * (time_s - time_s[quiet].mean()) if abs(slope) > OUT * error else 0.0
     rest = values - mean - line
     noise = max(noise, NO_NOISE * float(np.ptp(rest)))
-    if not noise > 0:
-        return "is the same number throughout"
     n_quiet = int(np.flatnonzero(quiet)[-1]) + 1
     lag_s = float(np.mean(lags_s)) if lags_s else 0.0
     return Trace(kind, name, *place, time_s, rest, noise, n_quiet, lag_s, tuple(flat_s), tuple(doubts))
@@ -118,10 +119,16 @@ def traces_of(
     """Kind and name of each trace of an event that has a place, and how to make it."""
     of_gauge: dict[str, list[Channel]] = {}
     for c in event.channels.values():
-        of_gauge.setdefault(c.gauge, []).append(c)
-    for gauge in event.gauges():
-        kind, values, doubts = part_of(gauge)
-        own = [c for c in of_gauge[gauge.name] if c.kind.startswith(("strain", "stress"))]
+        if c.kind.startswith(("strain", "stress")):
+            of_gauge.setdefault(c.gauge, []).append(c)
+    for name, own in of_gauge.items():
+        try:
+            gauge = gauge_of(name, own)
+            kind, values, doubts = part_of(gauge)
+        except CaseError as error:  # one that is dead, or arms that determine nothing
+            is_shear = len(own) == 3 or any(c.kind.endswith("xy") for c in own)
+            yield "shear" if is_shear else "strain", name, lambda why=str(error): why  # type: ignore[misc]
+            continue
         yield kind, gauge.name, lambda k=kind, g=gauge, v=values, d=doubts, own=own: trace_of(  # type: ignore[misc]
             k, g.name, (g.x_m, g.y_m), g.time_s, v, lags_s=lags_of(own), flat_s=g.flat_s,
             doubts=[*g.doubts, *d], quiet_s=quiet_s,

@@ -225,12 +225,14 @@ def test_traces_without_a_pick_are_told():
     rising = with_channel(
         constant, "strain_xy_5", values=np.maximum(TIME_S, 0) + NOISE * random.standard_normal(len(TIME_S))
     )
-    picks = slipfront.pick_events([rising])
-    assert picks.sizes["pick"] == 6
+    dead = with_channel(rising, "strain_xy_7", values=np.full(len(TIME_S), np.nan))
+    picks = slipfront.pick_events([dead])
+    assert picks.sizes["pick"] == 5
     assert picks.notes[1:] == [
         "event 1: st2: no pick: no value before a fall stands 5 times the noise out",
         "event 1: st3: no pick: is the same number throughout",
         "event 1: st5: no pick: no value before a fall stands 5 times the noise out",
+        "event 1: st7: no pick: gauge st7: has no values: leave it out",
     ]
     for by, why in (("threshold", "out for 5 samples"), ("aic", "nothing stands 5 times the noise out")):
         assert any(why in note for note in slipfront.pick_events([silent], by=by).notes)

@@ -210,7 +210,7 @@ def test_the_interval_follows_from_the_errors_of_picks(tmp_path, capsys):
         (PICKS.replace("0.2,0.003,2e-3", ",0.003,2e-3"), [], "a value of x_m is missing"),
         (PICKS.replace("error_s", "wrong"), [], "two onsets at x = 0.1 m in one event; delete one of their"),
         ("x_m,time_s\n0,0\n1,1\n", ["--event", "1"], "has no event 1; it has no events"),
-        ("x_m,time_s\n0,0\n1,1\n", ["--x-range", "2,3"], "0 places with an onset, from 2 to 3 m: no front"),
+        ("x_m,time_s\n0,0\n1,1\n", ["--x-range", "2,3"], "0 places with an onset from 2 to 3 m: no front"),
     ],
 )
 def test_mistakes_are_one_line(tmp_path, capsys, text, options, message):
