@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from slipfront.other_codes import read_seissol_fault_receivers as read_seissol_fault_receivers
     from slipfront.other_codes import read_sem2dpack as read_sem2dpack
     from slipfront.other_codes import read_uguca as read_uguca
+    from slipfront.picks import pick_events as pick_events
     from slipfront.records import Channel as Channel
     from slipfront.records import Event as Event
     from slipfront.records import read_records as read_records
@@ -69,6 +70,7 @@ if TYPE_CHECKING:
     from slipfront.running import version as version
     from slipfront.running import wave_speeds as wave_speeds
     from slipfront.running import well_posedness as well_posedness
+    from slipfront.stretches import speed_stretches as speed_stretches
     from slipfront.tip_fit import TipFit as TipFit
     from slipfront.tip_fit import fit_front as fit_front
     from slipfront.tip_fit import fit_tip as fit_tip
@@ -91,13 +93,15 @@ _NAMES = {
         "FrontSettings criteria falls_while_rises find_fronts find_fronts_in_history fit_exponential "
         "rank_correlation ratio_at_equal_x spread_at_equal_x"
     ),
+    "near_tip": "tip_field",
     "onsets": "read_onsets",
     "opened": "OpenRun",
     "opened_sequence": "OpenSequence open",
     "other_codes": "read_seissol_fault_receivers read_sem2dpack read_uguca",
+    "picks": "pick_events",
     "records": "Channel Event read_records",
     "running": "case info resume run run_with_law stable_step_s version wave_speeds well_posedness",
-    "near_tip": "tip_field",
+    "stretches": "speed_stretches",
     "tip_fit": "TipFit fit_front fit_tip fit_tips",
 }
 _PLACES = {name: module for module, names in _NAMES.items() for name in names.split()}

@@ -15,6 +15,7 @@ from slipfront.program import program
 COMMANDS = {
     "fronts": "slipfront.fronts_command",
     "gauges": "slipfront.gauges_command",
+    "picks": "slipfront.picks_command",
     "records": "slipfront.records_command",
     "report": "slipfront.report.command",
     "study convergence": "slipfront.study.convergence",

@@ -27,10 +27,12 @@ from slipfront.units import attributes, unit_of, variables
 # Arrays by their names, such as a Dataset of OpenRun.
 Arrays = Mapping[Any, Any]
 NAN = float("nan")
+Errors = tuple[float, np.ndarray]  # standard ones, of places and of each time
 LENGTHS_AND_TIMES = ("l_star_m", "arrest_time_s", "min_length_m")  # of FrontSettings
 DIGITS = 7  # of times at most, behind which rounding begins
 WAITS = 5  # of a tip, in times that a front of the record takes for its least length
 NORMAL_95 = 1.96  # standard errors to each side that hold 95 %
+STEPS = 100  # of an iteration at most
 UNEVEN = 10  # speeds within a front that differ as many times are those of no line
 
 POINT_COLUMNS = (*(name for name in FRONT_COLUMNS if name not in ("front_id", "direction")), "slipping_share")
@@ -119,6 +121,8 @@ def checked(settings: FrontSettings | None) -> FrontSettings:
 
 def settings_of_record(x_m: np.ndarray, onset_s: np.ndarray, given: FrontSettings) -> FrontSettings:
     """What is None becomes what suits the record, as find_fronts says."""
+    if (slips := np.isfinite(onset_s)).sum() == 2:
+        x_m, onset_s = x_m[slips], onset_s[slips]
     spacing = np.diff(x_m)
     usual = float(np.median(spacing)) if spacing.size else 1.0
     with np.errstate(invalid="ignore"):
@@ -158,42 +162,62 @@ def time_step_s(x_m: np.ndarray, onset_s: np.ndarray) -> float:
     return float(digit if is_uniform else digit * np.gcd.reduce(np.round(parts).astype(np.int64)))
 
 
-def slope_of_line(x: np.ndarray, t: np.ndarray, errors: tuple[float, float] | None) -> float:
-    """Of t over x, both about their means, as Deming's line has it: the sum of (t - slope x)^2 over the
-    variance of this by the standard errors of x and t is least. Without errors each is the same share of its
-    own spread, which makes the slope the geometric mean of t regressed on x and x on t."""
+def slope_of_line(x: np.ndarray, t: np.ndarray, errors: Errors | None) -> float:
+    """Of t over x: Deming's line, the sum of (t - slope x)^2 over the variance of this by the standard errors
+    of x and t is least. Without errors each is the same share of its own spread, which makes the slope the
+    geometric mean of t regressed on x and x on t. Times with an error each: see weighted_slope."""
+    if errors is not None and np.ptp(errors[1]) > 0:
+        return weighted_slope(x, t, errors)
+    x, t = x - x.mean(), t - t.mean()
     xx, tt, xt = float(x @ x), float(t @ t), float(x @ t)
     if not xt > 0:
         return NAN
-    of_x, of_t = (xx, tt) if errors is None else (errors[0] ** 2, errors[1] ** 2)
+    of_x, of_t = (xx, tt) if errors is None else (errors[0] ** 2, float(errors[1][0]) ** 2)
     more = of_x * tt - of_t * xx
     root = float(np.hypot(more, 2 * np.sqrt(of_x * of_t) * xt))
     # The same root twice: neither form subtracts near equals.
     return (more + root) / (2 * of_x * xt) if more > 0 else 2 * of_t * xt / (root - more)
 
 
+def weighted_slope(x: np.ndarray, t: np.ndarray, errors: Errors) -> float:
+    """Deming's line where each time has an error of its own, by York's iteration: D. York et al., American
+    Journal of Physics 72, 367 (2004)."""
+    place, time = errors
+    slope = float(np.polyfit(x, t, 1, w=1 / time)[0])
+    for _ in range(STEPS):
+        weight = 1 / (time**2 + (slope * place) ** 2)
+        own_x, own_t = (v - np.average(v, weights=weight) for v in (x, t))
+        beta = weight**2 * (own_x * time**2 + slope * own_t * place**2)
+        last, slope = slope, float(beta @ own_t / (beta @ own_x))
+        if abs(slope - last) <= 1e-12 * abs(slope):
+            break
+    return slope
+
+
 def fitted_speed(
-    run_m: np.ndarray, onset_s: np.ndarray, step_s: float, errors: tuple[float, float] | None
+    run_m: np.ndarray, onset_s: np.ndarray, step_s: float, errors: Errors | None
 ) -> tuple[float, float, float]:
     """Speed of the line through onset over distance run, and its interval: what times wrong by up to half
     a step on either side can make of it, or, where that is wider, 95 % by the scatter about the line or by
     the errors."""
     if len(run_m) < 2:
         return NAN, NAN, NAN
-    x, t = run_m - run_m.mean(), onset_s - onset_s.mean()
-    weight = x / (x @ x)
-    slope = slope_of_line(x, t, errors)
+    slope = slope_of_line(run_m, onset_s, errors)
+    if not slope > 0:
+        return NAN, NAN, NAN
+    share = np.ones_like(run_m) if errors is None else 1 / (errors[1] ** 2 + (slope * errors[0]) ** 2)
+    x, t = (v - np.average(v, weights=share) for v in (run_m, onset_s))
+    squares = float(share * x @ x)
+    weight = share * x / squares
     scatter = t - float(weight @ t) * x
     half = float(np.abs(weight).sum()) * step_s / 2
     if (freedom := len(x) - 2) > 0:
-        error = float(np.sqrt(scatter @ scatter / freedom / (x @ x)))
+        error = float(np.sqrt(share * scatter @ scatter / freedom / squares))
         half = max(half, float(stdtrit(freedom, 0.975)) * error)
     if errors is not None:
-        half = max(half, NORMAL_95 * float(np.hypot(errors[1], slope * errors[0]) / np.sqrt(x @ x)))
+        half = max(half, NORMAL_95 / float(np.sqrt(squares)))
     if half == 0 and freedom == 0:  # nothing tells how wrong two times are
         half = float("inf")
-    if not slope > 0:
-        return NAN, NAN, NAN
     return 1 / slope, 1 / (slope + half), 1 / (slope - half) if slope > half * (1 + 1e-9) else float("inf")
 
 
@@ -203,14 +227,26 @@ def slices_of(fronts: xr.Dataset) -> list[slice]:
     return [slice(a, b) for a, b in zip([0, *ends], ends, strict=False)]
 
 
-def add_speeds(fronts: xr.Dataset, step_s: float, errors: tuple[float, float] | None) -> None:
-    """A place that two fronts share, where they begin or meet, is on neither line: slip began beside it, and
-    at least one of them took another time to it than its speed says."""
-    x, onset = fronts["x_m"].to_numpy(), fronts["onset_s"].to_numpy()
+def on_own_line(fronts: xr.Dataset) -> np.ndarray:
+    """Whether a point is on its front's line. A place that two fronts share, where they begin or meet, is on
+    neither: slip began beside it, and at least one of them took another time to it than its speed says."""
     _, which, times = np.unique(fronts["node"].to_numpy(), return_inverse=True, return_counts=True)
-    own = times[which] == 1
+    return times[which] == 1
+
+
+def speed_of(
+    fronts: xr.Dataset, points: np.ndarray, step_s: float, errors: Errors | None
+) -> tuple[float, float, float]:
+    """fitted_speed of some points of a front; errors: those of the record's nodes."""
+    x, onset = fronts["x_m"].to_numpy()[points], fronts["onset_s"].to_numpy()[points]
+    own = errors and (errors[0], errors[1][fronts["node"].to_numpy()[points]])
+    return fitted_speed(np.abs(x - x[:1]), onset, step_s, own)
+
+
+def add_speeds(fronts: xr.Dataset, step_s: float, errors: Errors | None) -> None:
+    own = on_own_line(fronts)
     parts = [np.arange(part.start, part.stop)[own[part]] for part in slices_of(fronts)]
-    speeds = [fitted_speed(np.abs(x[at] - x[at[:1]]), onset[at], step_s, errors) for at in parts]
+    speeds = [speed_of(fronts, at, step_s, errors) for at in parts]
     columns = np.array(speeds, dtype=float).reshape(-1, 3).T
     for name, values in zip(
         ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s"), columns, strict=True
@@ -218,16 +254,22 @@ def add_speeds(fronts: xr.Dataset, step_s: float, errors: tuple[float, float] | 
         fronts[name] = ("front", values, attributes(name))
 
 
-def errors_of(place_m: float | None, time_s: float | None) -> tuple[float, float] | None:
+def errors_of(place_m: float | None, time_s: ArrayLike | None, n: int) -> Errors | None:
+    """Of n nodes; those of times may differ."""
     if place_m is None and time_s is None:
         return None
-    made = [
-        0.0 if value is None else number(value, name, least=0, finite=True)
-        for name, value in (("place_error_m", place_m), ("time_error_s", time_s))
-    ]
-    if not any(made):
-        raise CaseError("place_error_m and time_error_s are both 0: give one of them above it, or neither")
-    return made[0], made[1]
+    place = 0.0 if place_m is None else number(place_m, "place_error_m", least=0, finite=True)
+    if time_s is None or np.ndim(time_s) == 0:
+        one = 0.0 if time_s is None else number(time_s, "time_error_s", least=0, finite=True)
+        if not (place or one):
+            raise CaseError(
+                "place_error_m and time_error_s are both 0: give one of them above it, or neither"
+            )
+        return place, np.full(n, one)
+    each = array(time_s, "time_error_s", finite=True)
+    if len(each) != n or not (each > 0).all():
+        raise CaseError(f"time_error_s must be a number, or {n} of them above 0, one for each onset")
+    return place, each
 
 
 def doubts_of_speeds(fronts: xr.Dataset) -> list[str]:
@@ -283,7 +325,7 @@ def find_fronts(
     resolution_s: float | None = None,
     never_slipped: float | str | None = None,
     place_error_m: float | None = None,
-    time_error_s: float | None = None,
+    time_error_s: ArrayLike | None = None,
     settings: FrontSettings | None = None,
 ) -> xr.Dataset:
     """Fronts in the times at which slip begins along an interface.
@@ -300,11 +342,11 @@ def find_fronts(
     time. Without it -1, -99 and the like are such marks where all others are at least 0, and so are 999, 1e9
     farther from the others than these are from each other; a UserWarning says so.
     place_error_m, time_error_s: standard errors of x_m and onset_s, by which the line of each front's speed
-    weighs them; one alone: the other is exact. Without them the line favours neither.
-    settings: None in it are: l_star_m the median spacing; min_length_m twice that, of two places their
-    distance; arrest_time_s 5 times
-    what a front takes, at the median speed between neighbours, for min_length_m or the largest spacing
-    (at most 5 median ones) where that is longer.
+    weighs them; one alone: the other is exact. Without them the line favours neither. time_error_s may be
+    [nodes].
+    settings: None in it are: l_star_m the median spacing; min_length_m twice that, of two places that
+    slip their distance; arrest_time_s 5 times what a front takes, at the median speed between neighbours, for
+    min_length_m or the largest spacing (at most 5 median ones) where that is longer.
 
     Returns a Dataset over `point` (front_id, x_m, onset_s, v_tip_m_per_s, ...) and `front`: direction, mode,
     end (arrest, meets_front, contact_end, record_edge, record_end), speed_m_per_s of the line through its
@@ -325,7 +367,7 @@ def find_fronts(
     last = float(slips.max()) if slips.size else 0.0
     end = last if end_time_s is None else number(end_time_s, "end_time_s", least=last)
     resolution = 0.0 if resolution_s is None else number(resolution_s, "resolution_s", least=0)
-    errors = errors_of(place_error_m, time_error_s)
+    errors = errors_of(place_error_m, time_error_s, len(onset))
     given = checked(settings)
     given.options()  # refuses what is wrong before it is used
     fits = len(x) == len(onset) > 1 and bool(np.all(np.diff(x) > 0))  # or the module refuses it

@@ -13,7 +13,7 @@ import xarray as xr
 
 from slipfront.errors import CaseError
 from slipfront.files import DataError, Table, one_line, open_file, read_table
-from slipfront.given import path
+from slipfront.given import path, whole
 from slipfront.read import require, require_ascending
 from slipfront.units import attributes
 
@@ -31,6 +31,12 @@ QUANTITIES: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
     "onset_s": (("time", "t", "onset", "onset_time", "arrival", "arrival_time"), TIMES),
     "t_s_Pa": (("t_s",), PRESSURES),
     "p_s_Pa": (("p_s",), PRESSURES),
+}
+#: Those of events, and of picks of their onsets.
+OF_EVENTS: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
+    **QUANTITIES,
+    "event": (("event",), {"": 1.0}),
+    "error_s": (("error", "onset_error", "time_error"), TIMES),
 }
 WANTED = "x and time with their units, such as x_m or x (mm), and time_s or time (us)"
 NEVER = ("", "nan", "na", "n/a", "none", "-", "inf", "+inf", "-inf")
@@ -156,6 +162,12 @@ def csv_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray
     return [name for name in table.header if name], lambda name, may_miss: numbers_of(table, name, may_miss)
 
 
+def texts_of(file: Path, column: str) -> list[str]:
+    """Of a CSV file, empty where it has no such column."""
+    table = read_table(file, by_hand=True, separators=";\t,")
+    return table.texts(column) if column in table.header else [""] * len(table.rows)
+
+
 def mat_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray]]:
     from scipy.io import loadmat
 
@@ -178,31 +190,129 @@ def mat_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray
     return [name for name in held if not name.startswith("__")], numbers
 
 
-def read_onsets(file: str | Path, *, never_slipped: float | str | None = None) -> xr.Dataset:
+def at_places(
+    file: Any, column: str, read: dict[str, np.ndarray], is_of_events: bool
+) -> tuple[np.ndarray, list[str]]:
+    """Rows in the order of their places, those of a file of events in any; of several at one place that with
+    the least error."""
+    x = read["x_m"]
+    if not is_of_events:
+        order = np.arange(len(x))[:: -1 if np.all(np.diff(x) < 0) else 1]
+        require_ascending(file, column, x[order])
+        return order, []
+    require(bool(np.isfinite(x).all()), file, f"a value of {column} is missing")
+    order = np.lexsort((read.get("error_s", np.zeros(len(x))), x))
+    is_first = np.diff(x[order], prepend=-np.inf) > 0
+    if is_first.all():
+        return order, []
+    twice = x[order][np.flatnonzero(~is_first)[0]]
+    if "error_s" not in read:
+        raise DataError(f"{file}: two onsets at x = {twice:.6g} m in one event; delete one of their rows")
+    n = int((~is_first).sum())
+    return order[is_first], [f"{n} more at a place that has one: that with the least error counts"]
+
+
+def record_of(
+    where: Any, column: str, read: dict[str, np.ndarray], doubts: np.ndarray, is_of_events: bool,
+    never_slipped: float | str | None, unit: str,
+) -> tuple[dict[str, np.ndarray], list[str]]:  # fmt: skip
+    """Columns of one event in the order of its places, and notes."""
+    order, notes = at_places(where, column, read, is_of_events)
+    of = {quantity: values[order] for quantity, values in read.items()}
+    of["onset_s"], told = without_marks(of["onset_s"], never_slipped, unit)
+    if "error_s" in of:
+        of["error_s"] = known_errors(where, of["error_s"])
+        if np.isnan(of["error_s"]).all():
+            del of["error_s"]
+    if n_doubts := int((doubts[order] != "").sum()):
+        told.append(f"{n_places(n_doubts)} with a doubt on the onset")
+    return of, [*told, *notes]
+
+
+def records_of_events(
+    where: Any, read: dict[str, np.ndarray], event: np.ndarray, doubts: np.ndarray
+) -> dict[int | None, xr.Dataset]:
+    """Records in SI units, by their events."""
+    made: dict[int | None, xr.Dataset] = {}
+    for k in np.unique(event):
+        own = {quantity: values[event == k] for quantity, values in read.items()}
+        of, notes = record_of(where, "x_m", own, doubts[event == k], True, NONE, "s")
+        variables = {quantity: ("node", values, attributes(quantity)) for quantity, values in of.items()}
+        made[int(k)] = xr.Dataset(variables, attrs={"notes": notes})
+    return made
+
+
+def read_each(
+    file: Path, never_slipped: float | str | None = None, event: int | None = None
+) -> dict[int | None, xr.Dataset]:
+    """The record of each event in a file, or of the one that is named; of a file without events the only one,
+    as that of None."""
+    is_mat = file.suffix.lower() == ".mat"
+    names, numbers = mat_columns(file) if is_mat else csv_columns(file)
+    chosen = columns_of(file, names, OF_EVENTS)
+    read = {
+        quantity: numbers(name, quantity in ("onset_s", "error_s")) for quantity, (name, _) in chosen.items()
+    }
+    lengths = {len(values) for values in read.values()}
+    require(len(lengths) == 1, file, "its columns differ in length")
+    n = len(read["x_m"])
+    require(n > 0, file, "fewer than two rows")
+    numbered = read.pop("event", None)
+    if numbered is None and event is not None:
+        raise DataError(f"{file}: has no column 'event'; leave the event out")
+    if numbered is not None and not ((numbered % 1 == 0) & (numbered >= 0)).all():
+        raise DataError(f"{file}: column 'event' holds what is no whole number from 0")
+    own = np.full(n, -1) if numbered is None else numbered.astype(np.int64)
+    if event is not None and event not in own:
+        raise DataError(f"{file}: has no event {event}; it has {', '.join(map(str, np.unique(own)))}")
+    doubts = np.array([""] * n if is_mat else texts_of(file, "doubt"), dtype=np.str_)
+    unit = name_and_unit(chosen["onset_s"][0])[1]
+    made: dict[int | None, xr.Dataset] = {}
+    for k in np.unique(own) if event is None else (event,):
+        rows = {quantity: values[own == k] for quantity, values in read.items()}
+        of, notes = record_of(file, chosen["x_m"][0], rows, doubts[own == k], numbered is not None,
+                              never_slipped, unit)  # fmt: skip
+        if numbered is None:
+            require(len(of["x_m"]) >= 2, file, "fewer than two rows")
+            require(bool(np.isfinite(of["onset_s"]).any()), file, "no row has a time: nothing slips")
+        variables = {
+            quantity: ("node", in_si(values, chosen[quantity][1]), attributes(quantity))
+            for quantity, values in of.items()
+        }
+        made[None if numbered is None else int(k)] = xr.Dataset(variables, attrs={"notes": notes})
+    return made
+
+
+def known_errors(file: Any, error: np.ndarray) -> np.ndarray:
+    """What is missing is the median of the others."""
+    known = error[np.isfinite(error)]
+    require(bool((known > 0).all()), file, "holds an error of a time that is not above 0")
+    return np.where(np.isfinite(error), error, np.median(known)) if known.size else error
+
+
+def read_onsets(
+    file: str | Path, *, never_slipped: float | str | None = None, event: int | None = None
+) -> xr.Dataset:
     """The record in a CSV file (commas, or semicolons or tabs with decimal points or commas) or a .mat file.
 
     Columns are found by their names with their units: `x_m`, `x (mm)`, `time_us`, `onset [ms]`, and
-    perhaps `t_s_MPa`, `p_s_MPa`, the tractions before the event.
+    perhaps `t_s_MPa`, `p_s_MPa`, the tractions before the event, and `error_us`, the standard error of a
+    time. With a column `event`, as in the files of `slipfront picks`, it holds several records, whose rows
+    are in any order.
     never_slipped: see find_fronts; in the file's unit. Empty cells, nan, inf, NA and - mean never slipped.
+    event: the one to read; by default all, of which find_fronts takes one at a time.
 
-    Returns a Dataset over `node`, in SI units: x_m, ascending; onset_s, NaN where a place never slips;
-    t_s_Pa and p_s_Pa. Its attribute `notes` says how many never slip, and by what mark.
+    Returns a Dataset over `node`, in SI units: x_m, ascending in each event; onset_s, NaN where a place never
+    slips; t_s_Pa, p_s_Pa, error_s and event, where the file has them. Its attribute `notes` says how many
+    never slip, and by what mark.
     Raises Error where the file is no such record."""
-    file = path(file, "file")
-    names, numbers = mat_columns(file) if file.suffix.lower() == ".mat" else csv_columns(file)
-    chosen = columns_of(file, names)
-    read = {quantity: numbers(name, quantity == "onset_s") for quantity, (name, _) in chosen.items()}
-    lengths = {len(values) for values in read.values()}
-    require(len(lengths) == 1, file, "its columns differ in length")
-    if np.all(np.diff(read["x_m"]) < 0):
-        read = {quantity: values[::-1] for quantity, values in read.items()}
-    require_ascending(file, chosen["x_m"][0], read["x_m"])
-    require(len(read["x_m"]) >= 2, file, "fewer than two rows")
-    unit = name_and_unit(chosen["onset_s"][0])[1]
-    read["onset_s"], notes = without_marks(read["onset_s"], never_slipped, unit)
-    require(bool(np.isfinite(read["onset_s"]).any()), file, "no row has a time: nothing slips")
-    variables = {
-        quantity: ("node", in_si(values, chosen[quantity][1]), attributes(quantity))
-        for quantity, values in read.items()
-    }
-    return xr.Dataset(variables, attrs={"notes": notes})
+    wanted = None if event is None else whole(event, "event", least=0)
+    made = read_each(path(file, "file"), never_slipped, wanted)
+    if None in made:
+        return made[None]
+    notes = [f"event {k}: {note}" for k, record in made.items() for note in record.attrs["notes"]]
+    each = [
+        record.assign(event=("node", np.full(record.sizes["node"], k), {"units": "1", "long_name": "event"}))
+        for k, record in made.items()
+    ]
+    return xr.concat(each, "node", join="outer", combine_attrs="drop").assign_attrs(notes=notes)

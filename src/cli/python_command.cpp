@@ -34,6 +34,7 @@ constexpr std::array python_commands = {
     PythonCommand{nullptr, "gauges",
                   "Fit the field of a front's tip to strain gauges, or compare them with a run"},
     PythonCommand{nullptr, "records", "Cut the files of a laboratory's recorders into events, calibrated"},
+    PythonCommand{nullptr, "picks", "Pick when a front passes each gauge of recorded events, with errors"},
     PythonCommand{nullptr, "sweep", "Run a case over values of its keys, and compare"},
     PythonCommand{"study", "convergence",
                   "Front speeds over element size, interface step and damping, with their limits"},

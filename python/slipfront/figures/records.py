@@ -10,21 +10,21 @@ import numpy as np
 from slipfront.channels import KINDS
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
-from slipfront.records import Channel, Event
+from slipfront.records import Event
 
 MOST_EVENTS, MOST_ROWS = 6, 12
 POINTS = 2000  # of a trace
 
 
-def trace(channel: Channel) -> tuple[np.ndarray, np.ndarray]:
+def trace(time_s: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Times and values, the least and the largest of each piece of a long record."""
-    n = len(channel.values)
+    n = len(values)
     width = -(-n // POINTS)
     if width < 2:
-        return channel.time_s, channel.values
+        return time_s, values
     starts = np.arange(0, n, width)
-    ends = [of.reduceat(channel.values, starts) for of in (np.fmin, np.fmax)]
-    return np.repeat(channel.time_s[starts], 2), np.ravel(ends, order="F")
+    ends = [of.reduceat(values, starts) for of in (np.fmin, np.fmax)]
+    return np.repeat(time_s[starts], 2), np.ravel(ends, order="F")
 
 
 def draw_records(events: Iterable[Event]) -> Drawing:
@@ -43,7 +43,7 @@ def draw_records(events: Iterable[Event]) -> Drawing:
             ax, of = axes[row, k], [c for c in event.channels.values() if c.gauge == name]
             factor, unit = (1e6, "µε") if of and of[0].kind.startswith("strain") else (1.0, rows[name])
             for channel in of:
-                time_s, values = trace(channel)
+                time_s, values = trace(channel.time_s, channel.values)
                 ax.plot(1e3 * time_s, factor * values, label=plain(channel.name), linewidth=0.5)
             if k == 0:
                 ax.set_ylabel(f"{plain(name)} ({unit})" if unit != "1" else plain(name))
