@@ -22,6 +22,7 @@ PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3"
 DAMPING = {"stiffness_damping_s": 0.01e-6}
 HEIGHTS_M = (0.5e-3, 1e-3, 3.5e-3, 10e-3)
 P_PA, MU_K = 5e6, 0.3
+LEAST_ROWS = 2  # of elements below a gauge
 LEAST_WAY = 4  # heights that a front has run from its patch when it comes to a gauge
 FAST = 0.9  # of c_R, from which on the field lags behind a front that speeds up
 WAVES = slipfront.wave_speeds(**PMMA)
@@ -146,7 +147,10 @@ def main() -> None:
         assert isinstance(run, slipfront.OpenRun)
         gauges = slipfront.gauges_of(run)
         for fast in (False, True):
-            for y_m in sorted({gauge.y_m for gauge in gauges}):
+            heights = {
+                gauge.y_m for gauge in gauges if gauge.y_m > LEAST_ROWS * given["plate"]["element_size_m"]
+            }
+            for y_m in sorted(heights):
                 own = [g for g in gauges if g.y_m == y_m and g.x_m - begins_m(given) > LEAST_WAY * y_m]
                 own = [g for g in own if (known(run, g.x_m)[0] > FAST * WAVES.c_R_m_per_s) == fast]
                 if len(own) > 2:

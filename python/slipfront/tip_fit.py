@@ -841,6 +841,12 @@ def fit_tips(
     return [fit for own in found for fit in own]
 
 
+def times_along_x(gauges: list[Gauge], fits: dict[str, TipFit]) -> tuple[np.ndarray, np.ndarray]:
+    """Places of gauges, ascending, and the mean time of the tip at each."""
+    x_m = np.unique([g.x_m for g in gauges])
+    return x_m, np.array([np.mean([fits[g.name].tip_s for g in gauges if g.x_m == x]) for x in x_m])
+
+
 def fit_front(
     gauges: Iterable[Gauge],
     bodies: OpenRun | CaseLike | _core.Case | Bodies,
@@ -865,8 +871,7 @@ def fit_front(
     given = [g for g in given if g.name in by_name]
     if len(given) < 2:
         raise CaseError("no front passes two gauges or more the same way: there is nothing to fit together")
-    x_m = np.unique([g.x_m for g in given])
-    tips = np.array([np.mean([by_name[g.name].tip_s for g in given if g.x_m == x]) for x in x_m])
+    x_m, tips = times_along_x(given, by_name)
     V = made.speed_m_per_s or float(np.median([by_name[g.name].speed_m_per_s for g in given]))
     if len(x_m) > 1 and made.speed_m_per_s is None:
         slowness = way * float(np.polyfit(x_m, tips, 1)[0])
@@ -877,6 +882,15 @@ def fit_front(
                 f"the tip's times at the gauges {told}: check clocks and places, or give speed_m_per_s"
             )
     fast = of.c_S_m_per_s < V
+    # A gauge alone may be fitted by a field above c_S, or below, where the times at all say otherwise.
+    for gauge in given:
+        if (of.c_S_m_per_s < by_name[gauge.name].speed_m_per_s) != fast:
+            known = {"speed_m_per_s": V, "direction": way, "tip_s": by_name[gauge.name].tip_s}
+            by_name[gauge.name] = fit_tip(gauge, of, **{**settings, **known})
+    given = [g for g in given if by_name[g.name].has_tip]
+    if len(given) < 2:
+        raise CaseError("no front passes two gauges or more at one speed: there is nothing to fit together")
+    x_m, tips = times_along_x(given, by_name)
     ended = []
     heights = [height * min(abs(g.y_m) for g in given) for height in START_ZONES]
     zones = {float(np.median([by_name[g.name].cohesive_zone_m for g in given])), *heights}
