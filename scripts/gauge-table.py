@@ -14,10 +14,14 @@ from typing import Any
 
 import numpy as np
 import slipfront
+from slipfront.figures.drawing import write_results
+from slipfront.figures.gauges import draw_fits
 from slipfront.near_tip import ZONES
 from slipfront.pages import table, with_tables
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "gauges.md"
+FIGURE = PAGE.parent / "figures" / "gauges_fit.png"
+OF_FIGURE = ("rupture, d_c = 2.2 um", 3.5e-3)  # the front, and about the height of the gauges
 PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180.0}
 DAMPING = {"stiffness_damping_s": 0.01e-6}
 HEIGHTS_M = (0.5e-3, 1e-3, 3.5e-3, 10e-3)
@@ -135,6 +139,13 @@ def row_of(name: str, run: slipfront.OpenRun, gauges: list[slipfront.Gauge]) -> 
     ]  # fmt: skip
 
 
+def draw(gauges: list[slipfront.Gauge], run: slipfront.OpenRun) -> None:
+    """The first gauges that the front passes, with their fits, alone and together."""
+    alone = slipfront.fit_tips(gauges, run, direction=1)
+    together = slipfront.fit_front(gauges, run, alone=alone, direction=1)
+    write_results(FIGURE, run.folder, lambda _: draw_fits([("", gauges, alone + together)]))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
@@ -146,6 +157,8 @@ def main() -> None:
         run = slipfront.open(there) if (there / "run.json").exists() else slipfront.run(given, output=there)
         assert isinstance(run, slipfront.OpenRun)
         gauges = slipfront.gauges_of(run)
+        if name == OF_FIGURE[0]:
+            draw([g for g in gauges if abs(g.y_m - OF_FIGURE[1]) < 0.2e-3][:3], run)
         for fast in (False, True):
             heights = {
                 gauge.y_m for gauge in gauges if gauge.y_m > LEAST_ROWS * given["plate"]["element_size_m"]
