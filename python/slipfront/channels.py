@@ -51,7 +51,7 @@ KINDS = {
     "acceleration": Kind("m s-2", "acceleration"),
     "trigger": Kind("1", "trigger", False, factor=1.0),
 }
-STRAIN_BRIDGES = ("strain", "strain_xx", "strain_yy")  # a bridge on shear has a factor of its own
+STRAIN_BRIDGES = ("strain", "strain_xx", "strain_yy")  # kinds whose calibration may be that of a bridge
 TEXTS = ("name", "column", "kind", "gauge", "bridge", "time", "file")
 PLAIN = ("factor", "gain", "gauge_factor", "polarity", "dead")
 #: Keys that end with a unit, and what it may be.

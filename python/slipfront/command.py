@@ -16,6 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NoReturn, TextIO
 
+from slipfront.errors import CaseError
 from slipfront.files import DataError, NoRoom, one_line, open_file
 
 #: Arguments of a material, by the keys of a case.
@@ -31,6 +32,14 @@ def option(name: str) -> str:
 def in_options(text: str, names: tuple[str, ...]) -> str:
     """A message about arguments of a function, as one about options."""
     return re.sub(rf"\b({'|'.join(names)})\b", lambda found: option(found[0]), text)
+
+
+def by_options(work: Callable[[], list[str]], names: tuple[str, ...]) -> list[str]:
+    """What work returns; arguments that it refuses are named as options."""
+    try:
+        return work()
+    except CaseError as error:
+        raise DataError(in_options(str(error), names)) from None
 
 
 def write_line(stream: TextIO | None, text: str) -> None:

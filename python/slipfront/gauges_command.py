@@ -347,11 +347,4 @@ def in_words(text: str) -> str:
 
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
-
-    def told() -> list[str]:
-        try:
-            return work(options)
-        except CaseError as error:
-            raise DataError(in_words(str(error))) from None
-
-    return command.run("slipfront gauges", told)
+    return command.run("slipfront gauges", lambda: command.by_options(lambda: work(options), OPTIONS))

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from slipfront import command
-from slipfront.errors import CaseError, one_line
+from slipfront.errors import one_line
 from slipfront.files import DataError
 from slipfront.gauges_command import interval
 from slipfront.picks import KINDS, METHODS, TIMES_NOISE, pick_events
@@ -101,11 +101,4 @@ def work(options: argparse.Namespace) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
-
-    def told() -> list[str]:
-        try:
-            return work(options)
-        except CaseError as error:
-            raise DataError(command.in_options(str(error), OPTIONS)) from None
-
-    return command.run("slipfront picks", told)
+    return command.run("slipfront picks", lambda: command.by_options(lambda: work(options), OPTIONS))

@@ -12,8 +12,7 @@ import numpy as np
 
 from slipfront import command
 from slipfront.cutting import SHARE, write_records
-from slipfront.errors import CaseError, one_line
-from slipfront.files import DataError
+from slipfront.errors import one_line
 from slipfront.gauges_command import interval
 from slipfront.recorders import open_recording
 from slipfront.records import Channel, Event, each_event
@@ -157,11 +156,4 @@ def work(options: argparse.Namespace) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
-
-    def told() -> list[str]:
-        try:
-            return work(options)
-        except CaseError as error:
-            raise DataError(command.in_options(str(error), OPTIONS)) from None
-
-    return command.run("slipfront records", told)
+    return command.run("slipfront records", lambda: command.by_options(lambda: work(options), OPTIONS))

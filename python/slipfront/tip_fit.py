@@ -5,7 +5,8 @@ K is positive where the body above slips to +x."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import product
@@ -121,8 +122,7 @@ class Settings:
                     f"gauge {gauge.name}: r_max_m is {made.r_max_m:g} m; it must be above the gauge's "
                     f"height, {abs(gauge.y_m):g} m"
                 )
-        # At rest there is a field in any case; so a speed that is not given asks for no more than the zone's
-        # name.
+        # At rest there is a field in any case: without a speed the zone's name alone is checked.
         require_field(bodies, made.speed_m_per_s or 0.0, made.zone_m, self.zone, "zone_m")
         return made
 
@@ -204,9 +204,7 @@ class Record:
         """Columns of what each component has of its own: offset, and step. [parts x times, ...]"""
         level = np.repeat(np.eye(len(self.parts)), len(at), axis=0)
         columns = [level] if steps is None else [level, level * steps.reshape(-1, 1)]
-        if (
-            self.leaked is not None
-        ):  # dy/dt = dx/dt - 2 pi f y: what it takes is the integral of what it leaves
+        if self.leaked is not None:  # dy/dt = dx/dt - 2 pi f y: it takes the integral of what it leaves
             columns.append(self.leaked[:, at].reshape(-1, 1))
         return np.hstack(columns)
 
@@ -269,9 +267,8 @@ class Front:
         speeds = 1 / np.clip(slowness, 1 / self.range[1], 1 / self.range[0])
         return (self.path.of_times @ c)[self.place], speeds[self.place]
 
-    def fields(self, c: np.ndarray, zone_m: float) -> list[TipField]:
+    def fields(self, speeds: np.ndarray, zone_m: float) -> list[TipField]:
         """zone_m: X_c at the least speed. With Gamma and tau_p - tau_r it changes with the speed."""
-        _, speeds = self.times_and_speeds(c)
         of = partial(TipField, self.bodies, direction=self.direction, zone=self.settings.zone)
         drop = of(min(speeds), zone_m=zone_m).drop_per_root if zone_m > 0 else np.inf
         one = {v: of(v, zone_m=1.0).drop_per_root if zone_m > 0 else 0.0 for v in set(speeds)}
@@ -281,7 +278,7 @@ class Front:
     def look(self, c: np.ndarray, zone_m: float) -> bool:
         """Takes the times in reach of the tip; whether these are enough."""
         tips, speeds = self.times_and_speeds(c)
-        fields = self.fields(c, zone_m)
+        fields = self.fields(speeds, zone_m)
         reach = [
             self.settings.reach_m(r.height_m, f.zone_m) for r, f in zip(self.records, fields, strict=True)
         ]
@@ -292,17 +289,20 @@ class Front:
         """Field over the root of Gamma, and records, both without what offsets and steps can make of them."""
         tips, speeds = self.times_and_speeds(c)
         made = []
-        for r, tip, v, t, at in zip(self.records, self.fields(c, zone_m), speeds, tips, self.at, strict=True):
+        for r, tip, v, t, at in zip(
+            self.records, self.fields(speeds, zone_m), speeds, tips, self.at, strict=True
+        ):
             rows, steps = r.shapes(tip, v, t, at)
             rest = r.rest([rows, r.data[:, at]], steps if self.settings.step else None, at)
             made.append(rest.reshape(2, -1))
         shape, data = np.concatenate(made, axis=1)
         return shape, data
 
-    def residual(self, c: np.ndarray, zone_m: float) -> np.ndarray:
-        """What the best Gamma leaves of the records."""
+    def solved(self, c: np.ndarray, zone_m: float) -> tuple[float, np.ndarray, np.ndarray]:
+        """The best root of Gamma, what it leaves of the records, and the field over it."""
         shape, data = self.system(c, zone_m)
-        return data - shape * ((shape @ data) / (shape @ shape))
+        root = float(shape @ data) / float(shape @ shape)
+        return root, data - root * shape, shape
 
     def data(self) -> list[np.ndarray]:
         return [r.data[:, at] for r, at in zip(self.records, self.at, strict=True)]
@@ -326,6 +326,10 @@ class Front:
             scale[-1] = 0.1 / min(speeds)
         return scale
 
+    def start(self, tips_s: np.ndarray, speed: float) -> np.ndarray:
+        """Parameters of times at the places, and of a speed where it is free."""
+        return np.array([tips_s[0], 1 / speed]) if self.path.is_free else tips_s
+
     def n_columns(self, c: np.ndarray) -> int:
         """Parameters of the model, linear ones among them."""
         return sum(len(r.parts) * (1 + self.settings.step) for r in self.records) + len(c) + 1
@@ -334,9 +338,8 @@ class Front:
         square = squares(self.changes())
         if square <= CONSTANT * squares(self.data()):  # of a record that does not change
             return Trial(0.0, False)
-        shape, data = self.system(c, zone_m)
-        root = float(shape @ data) / float(shape @ shape)
-        left = self.split(data - root * shape)
+        root, rest, shape = self.solved(c, zone_m)
+        left = self.split(rest)
         n_apart = sum(a.size / correlated(a) for a in left) - self.n_columns(c)
         explained, of_left = root**2 * float(shape @ shape), max(squares(left), ROUNDING * square)
         return Trial(explained / of_left * max(n_apart, 1), root > 0)
@@ -351,7 +354,7 @@ class Front:
             return float(np.exp(np.clip(0.1 * u[-1], -5, 5)))
 
         def left(u: np.ndarray) -> np.ndarray:
-            return self.residual(c + scale * u[: len(c)], zone_m * grown(u) if free_zone else zone_m)
+            return self.solved(c + scale * u[: len(c)], zone_m * grown(u) if free_zone else zone_m)[1]
 
         start = np.zeros(len(c) + free_zone)
         if not np.isfinite(left(start)).all():
@@ -397,9 +400,8 @@ def profile_of(front: Front, c: np.ndarray, zone_m: float) -> tuple[Profile, np.
 
     def add(at_m: float, start: np.ndarray, free: bool = False) -> np.ndarray:
         near, at_m = front.nearest(start, at_m, free, LEAST_GAIN if free else PROFILE_GAIN)
-        shape, data = front.system(near, at_m)
-        root = float(shape @ data) / float(shape @ shape)
-        found[at_m] = float(((data - root * shape) ** 2).sum()), np.append(root, near)
+        root, left, _ = front.solved(near, at_m)
+        found[at_m] = float((left**2).sum()), np.append(root, near)
         return near
 
     for side in (lengths[begin:], [*lengths[:begin][::-1], *([] if front.fast else [0.0])]):
@@ -459,6 +461,16 @@ def profiled(found: Fitted) -> Fitted:
     return Fitted(front, c, zone_m, profile)
 
 
+@contextmanager
+def solvable(what: str) -> Iterator[None]:
+    """Refuses numbers that linear algebra or their size makes useless."""
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except (np.linalg.LinAlgError, OverflowError):
+        raise CaseError(f"{what}: cannot be fitted: its numbers are too large or too small") from None
+
+
 def fit_tip(gauge: Gauge, bodies: OpenRun | CaseLike | _core.Case | Bodies, **settings: Any) -> TipFit:
     """The field of the tip of a front fitted to a gauge's record: Gamma, the cohesive zone X_c, the speed,
     the time of the tip, and of each component an offset and a step of the residual stress or strain.
@@ -472,13 +484,8 @@ def fit_tip(gauge: Gauge, bodies: OpenRun | CaseLike | _core.Case | Bodies, **se
     instance(gauge, Gauge, "gauge")
     of = bodies_of(bodies)
     made = Settings(**settings).checked(of, [gauge])
-    try:
-        with np.errstate(all="ignore"):
-            fit = sought(gauge, of, made)
-    except (np.linalg.LinAlgError, OverflowError):
-        raise CaseError(
-            f"gauge {gauge.name}: cannot be fitted: its numbers are too large or too small"
-        ) from None
+    with solvable(f"gauge {gauge.name}"):
+        fit = sought(gauge, of, made)
     if made.direction is None and fit.has_tip and gauge.parts == ["xy"]:  # the same in a mirror
         return replace(fit, doubts=[*fit.doubts, "xy alone does not tell which way: give direction"])
     return fit
@@ -498,22 +505,21 @@ def starts_of(
     found = []
     for way, V, zone_m in product(ways, speeds, zones):
         fast = bodies.c_S_m_per_s < V
-        tips = (
-            times_of_tip(gauge, TipField(bodies, V, way, zone_m, settings.zone), V, settings)
-            if zone_m or not fast
-            else []
-        )
+        if fast and zone_m == 0:
+            continue
         front = Front([gauge], bodies, settings, way, fast)
-        for tip_s in tips:
-            c = np.array([tip_s, 1 / V])[: front.path.of_times.shape[1]]
-            if front.look(c, zone_m):
-                found.append((front.trial(c, zone_m), front, c, zone_m))
+        tip_s = time_of_tip(gauge, TipField(bodies, V, way, zone_m, settings.zone), V, settings)
+        if tip_s is None:
+            continue
+        c = front.start(np.array([tip_s]), V)
+        if front.look(c, zone_m):
+            found.append((front.trial(c, zone_m), front, c, zone_m))
     return found
 
 
-def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) -> list[float]:
-    """Where a field explains most of the record: on even times, as fine as the field asks for, whose values
-    are means about them. The record goes on as it ends."""
+def time_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) -> float | None:
+    """When a field explains most of the record: on even times, as fine as the field asks for, whose values
+    are means about them. The record goes on as it ends. None where it is too long or too short for that."""
     record = Record(gauge)
     reach_m = settings.reach_m(record.height_m, tip.zone_m)
     step_s = max(max(record.height_m, tip.zone_m / 4) / speed / FINE, record.step_s)
@@ -523,7 +529,7 @@ def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) 
         ends = settings.tip_s + np.array([-2, 2]) * FINE * step_s
     edges = ends[0] + step_s * (np.arange(-n, int(np.ptp(ends) / step_s) + n + 2) - 0.5)
     if n < 2 or len(edges) > MOST_EDGES:
-        return []
+        return None
     gone = cumulative_trapezoid(record.data, record.time_s, initial=0)
     # Integrals, linear beyond the ends, and from them means.
     integrals = [
@@ -535,18 +541,8 @@ def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) 
     means = np.diff(integrals, axis=1) / step_s
     windows = np.lib.stride_tricks.sliding_window_view(means, 2 * n + 1, axis=1)  # [parts, tips, times]
     windows = windows.transpose(1, 0, 2).reshape(windows.shape[1], -1)
-    even = Gauge(
-        gauge.name,
-        gauge.x_m,
-        gauge.y_m,
-        step_s * np.arange(-n, n + 1.0),
-        dict.fromkeys(record.parts, np.arange(2 * n + 1.0)),
-        gauge.is_strain,
-        gauge.smoothing_s,
-        gauge.places_m,
-        (),
-        gauge.bandwidth_Hz,
-    )
+    none = dict.fromkeys(record.parts, np.arange(2 * n + 1.0))  # the model asks for the times alone
+    even = gauge.changed((), time_s=step_s * np.arange(-n, n + 1.0), values=none)
     model, at = Record(even), np.arange(2 * n + 1)
     rows, steps = model.shapes(tip, speed, 0.0, at)
     levels = np.repeat(np.eye(len(rows)), len(at), axis=0) / np.sqrt(len(at))
@@ -556,7 +552,7 @@ def times_of_tip(gauge: Gauge, tip: TipField, speed: float, settings: Settings) 
     explained = (windows @ shape) ** 2 / (shape @ shape)
     left = (windows**2).sum(axis=1) - ((windows @ q) ** 2).sum(axis=1) - explained
     left = np.maximum(left, np.maximum(ROUNDING * changes, CONSTANT * (windows**2).sum(axis=1).max()))
-    return [float(ends[0] + step_s * int((explained / np.maximum(left, 1e-300)).argmax()))]
+    return float(ends[0] + step_s * int((explained / np.maximum(left, 1e-300)).argmax()))
 
 
 def sought(gauge: Gauge, bodies: Bodies, settings: Settings) -> TipFit:
@@ -582,9 +578,8 @@ class Estimate(NamedTuple):
     root: float  # of Gamma, negative where the body above slips to -x
     Gamma_error_J_per_m2: float
     signal: float  # the root over its error, tip and speed given
-    zones: tuple[
-        float, float, float
-    ]  # X_c over that of the best fit, and from and to; lengths where that is 0
+    #: X_c over that of the best fit, and from and to; lengths where that is 0.
+    zones: tuple[float, float, float]
     of_c: np.ndarray  # covariance of the parameters
     left: list[np.ndarray]  # of each record
     of_all: float  # rms of what is left over that of the records
@@ -594,14 +589,11 @@ class Estimate(NamedTuple):
 def estimate(found: Fitted) -> Estimate:
     front, c, zone_m, profile = found
     bodies, given = front.bodies, front.settings
-    shape, data = front.system(c, zone_m)
+    root, rest, shape = front.solved(c, zone_m)
     if not np.isfinite(shape).all():
         raise np.linalg.LinAlgError  # of which LAPACK would print a line
-    root = float(shape @ data) / float(shape @ shape)
-    left = front.split(data - root * shape)
-    n_columns = (
-        sum(len(r.parts) * (1 + given.step) for r in front.records) + len(c) + (profile is not None) + 1
-    )
+    left = front.split(rest)
+    n_columns = front.n_columns(c) + (profile is not None)
     n_apart = sum(a.size / correlated(a) for a in left)
     variance = max(squares(left) / max(n_apart - n_columns, 1), 1e-300)
 
@@ -651,16 +643,10 @@ def result(found: Fitted) -> list[TipFit]:
     """Of each gauge, with errors and doubts."""
     front, c, zone_m, _ = found
     shared = estimate(found)
-    every = zip(
-        front.records,
-        front.fields(c, zone_m),
-        *front.times_and_speeds(c),
-        front.at,
-        shared.left,
-        front.place,
-        strict=True,
-    )
-    return [of_gauge(front, shared, *each) for each in every]
+    tips, speeds = front.times_and_speeds(c)
+    fields = front.fields(speeds, zone_m)
+    of_each = (front.records, fields, tips, speeds, front.at, shared.left, front.place)
+    return [of_gauge(front, shared, *each) for each in zip(*of_each, strict=True)]
 
 
 def of_gauge(
@@ -731,14 +717,12 @@ def high_pass_that_explains_more(
     alone = Front([record.gauge], front.bodies, front.settings, front.direction, front.fast)
     (own,), alone.at = alone.records, [at]
     own.leaked = cumulative_trapezoid(own.data, own.time_s, initial=0)
-    start = np.array([tip_s, 1 / speed])[: alone.path.of_times.shape[1]]
-    c, zone_m = alone.nearest(start, tip.zone_m, free_zone=tip.zone_m > 0)
-    shape, data = alone.system(c, zone_m)
-    root = float(shape @ data) / float(shape @ shape)
-    (less,) = alone.split(data - root * shape)
+    c, zone_m = alone.nearest(alone.start(np.array([tip_s]), speed), tip.zone_m, free_zone=tip.zone_m > 0)
+    root, rest, _ = alone.solved(c, zone_m)
+    (less,) = alone.split(rest)
     variance = squares([less]) / max(less.size / correlated(less) - 10, 1)
     tips, speeds = alone.times_and_speeds(c)
-    rows, steps = own.shapes(alone.fields(c, zone_m)[0], speeds[0], tips[0], at)
+    rows, steps = own.shapes(alone.fields(speeds, zone_m)[0], speeds[0], tips[0], at)
     levels = own.levels(steps if front.settings.step else None, at)
     linear = np.linalg.lstsq(levels, (own.data[:, at] - root * rows).ravel(), rcond=None)[0]
     cut_off = -float(linear[-1]) / (2 * np.pi)
@@ -894,11 +878,10 @@ def fit_front(
     ended = []
     heights = [height * min(abs(g.y_m) for g in given) for height in START_ZONES]
     zones = {float(np.median([by_name[g.name].cohesive_zone_m for g in given])), *heights}
-    with np.errstate(all="ignore"):
+    with solvable("the gauges together"):
         for zone_m in sorted(zones) if made.zone_m is None else [made.zone_m]:
             front = Front(given, of, made, way, fast, flag(one_speed, "one_speed"))
-            c = np.array([tips[0], 1 / V]) if front.path.is_free else tips
-            fit = refined(front, c, zone_m) if not fast or zone_m > 0 else None
+            fit = refined(front, front.start(tips, V), zone_m) if not fast or zone_m > 0 else None
             if fit is not None:
                 ended.append((front.trial(fit.c, fit.zone_m), fit))
         order = ranked([trial for trial, _ in ended])
@@ -915,7 +898,7 @@ def passing(gauge: Gauge, bodies: Bodies, n: int, settings: dict[str, Any]) -> l
     rest = gauge
     for _ in range(n):
         found.append(fit_tip(rest, bodies, **settings))
-        rest = without(rest, bodies, found[-1])
+        rest = without(rest, bodies, found[-1], settings.get("zone", "linear"))
     return each_without_the_others(gauge, bodies, found, settings)
 
 
@@ -934,7 +917,7 @@ def doubts_of_another(
     """One where what the fits leave of the record is the passage of one more front, apart from theirs."""
     rest = gauge
     for fit in fits:
-        rest = without(rest, bodies, fit)
+        rest = without(rest, bodies, fit, settings.get("zone", "linear"))
     if not largest_change(rest, bodies.limit_m_per_s):
         return []
     other = fit_tip(rest, bodies, **{**settings, "zone_m": 0.0})
@@ -967,7 +950,7 @@ def refitted(gauge: Gauge, bodies: Bodies, fits: list[TipFit], settings: dict[st
             continue
         rest = gauge
         for other in found[:k] + found[k + 1 :]:
-            rest = without(rest, bodies, other)
+            rest = without(rest, bodies, other, settings.get("zone", "linear"))
         fit = fit_tip(rest, bodies, **{**settings, "direction": fits[k].direction, "tip_s": fits[k].tip_s})
         if not fit.has_tip:
             found[k] = fit
@@ -978,11 +961,11 @@ def refitted(gauge: Gauge, bodies: Bodies, fits: list[TipFit], settings: dict[st
     return found
 
 
-def without(gauge: Gauge, bodies: Bodies, fit: TipFit) -> Gauge:
+def without(gauge: Gauge, bodies: Bodies, fit: TipFit, zone: str = "linear") -> Gauge:
     """The record less the field and the step of a tip."""
     if not fit.has_tip:
         return gauge
-    tip = TipField(bodies, fit.speed_m_per_s, fit.direction, fit.cohesive_zone_m)
+    tip = TipField(bodies, fit.speed_m_per_s, fit.direction, fit.cohesive_zone_m, zone)
     rows, steps = Record(gauge).shapes(tip, fit.speed_m_per_s, fit.tip_s, np.arange(len(gauge.time_s)))
     root = np.copysign(np.sqrt(fit.Gamma_J_per_m2), fit.strength_drop_Pa)
     less = {
