@@ -407,3 +407,20 @@ def test_the_page_runs(tmp_path, monkeypatch):
         sources.append(names["history"].attrs["source"].partition(":")[0])
         assert list(names["fronts"].direction.values) == [-1, 1]
     assert sources == ["SEM2DPACK", "uguca", "SeisSol"]
+
+
+def test_the_converted_case_is_that_of_sem2dpack():
+    """cases/other-codes/testflt2d.toml against the numbers of EXAMPLES/TestFlt2D/Par.inp."""
+    rho, c_P, c_S = 2670, 6000, 3464
+    Tn, Tt, nucleating = -120e6, 70e6, 81.6e6
+    mu_s, mu_d, Dc = 0.677, 0.525, 0.4
+    case = ROOT / "cases/other-codes/testflt2d.toml"
+    info = slipfront.info(case)
+    assert info.speeds.c_L_m_per_s == pytest.approx(c_P, rel=1e-6)
+    assert info.speeds.c_S_m_per_s == pytest.approx(c_S, rel=1e-6)
+    S = (-mu_s * Tn - Tt) / (Tt + mu_d * Tn)
+    assert info.rupture.strength_excess_S.median == pytest.approx(S, rel=1e-12)
+    nu = (c_P**2 - 2 * c_S**2) / (2 * (c_P**2 - c_S**2))
+    zone = 9 * np.pi / 32 * rho * c_S**2 / (1 - nu) * Dc / ((mu_s - mu_d) * -Tn)
+    assert info.rupture.process_zone_m == pytest.approx(zone, rel=1e-5)
+    assert f"overstress_Pa = {(nucleating - Tt) / 1e6:g}e6" in case.read_text(encoding="utf-8")
