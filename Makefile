@@ -127,7 +127,7 @@ define REPRODUCE
 @echo "== Running the paper's cases into $(RESULTS)"
 PYTHONPATH=python $(PYTHON) $(PAPER)/reproduce.py -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(wildcard $(RESULTS)-open-choices/checksums.sha256),--open-choices $(RESULTS)-open-choices) $(1)
 @echo "== Drawing the figures"
-PYTHONPATH=python $(PYTHON) $(PAPER)/draw.py $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
+PYTHONPATH=python $(PYTHON) $(PAPER)/draw.py $(RESULTS)
 endef
 
 reproduce: ready module  ## everything behind the paper: runs, scorecard, figures, into results/

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import events
 import slipfront
 from events import Collapse, Event, event_of
-from numpy.typing import ArrayLike
 from scorecard import Claim, Reproduction
 from scorecard import scorecard as claims_of
-from slipfront.given import column, flag, in_order, instance, refusing, text
+from slipfront.given import flag, in_order, instance, refusing, text
 from slipfront.measures import Arrays
 from slipfront.running import CaseLike
 
@@ -58,17 +57,11 @@ def scorecard(
     left: Event,
     right: Event,
     spontaneous_mu_k_1: Event,
-    experiment: Mapping[str, ArrayLike] | None = None,
 ) -> list[Claim]:
     """Every claim against four events, the last of them with mu_k = 1.0; each row says how it is tested.
 
-    experiment: measured static_ratio and v_over_c_L [points]. Claims about studies over friction are not
-    tested: their `holds` is None."""
-    points = None
-    if experiment is not None:
-        ratio, speed = (column(experiment, "experiment", key) for key in ("static_ratio", "v_over_c_L"))
-        points = ratio, speed
+    Claims about studies over friction, and about an experiment, are not tested: their `holds` is None."""
     four = (spontaneous, left, right, spontaneous_mu_k_1)
     for name, event in zip(("spontaneous", "left", "right", "spontaneous_mu_k_1"), four, strict=True):
         instance(event, Event, name)
-    return claims_of(Reproduction(*four, experiment=points))
+    return claims_of(Reproduction(*four))

@@ -36,10 +36,10 @@ def draw_all(results: Results) -> list[Drawing]:
     return [drawing.marked(results.mark) for drawing in drawings]
 
 
-def write_figures(folder: Path, experiment: Path | None, kinds: Sequence[str]) -> list[str]:
+def write_figures(folder: Path, kinds: Sequence[str]) -> list[str]:
     """Into DIR/figures, with PNG among the kinds the page as well; returns what to print."""
     with matplotlib.rc_context(RC):
-        results = read_results(folder, experiment)
+        results = read_results(folder)
         drawings = guarded(folder, lambda: draw_all(results))
         with command.publishing_into(inside(folder, "figures")) as made:
             for drawing in drawings:
@@ -59,10 +59,8 @@ def main(arguments: list[str] | None = None) -> int:
         "Draws the paper's figures and a page of HTML with them, which needs PNG, into DIR/figures.",
         "`reproduce.py`",
     )
-    measured = "measured points to draw into figure 2: columns static_ratio and v_over_c_L or v_m_per_s"
-    parser.add_argument("--experiment", metavar="CSV", type=Path, help=measured)
     options = parser.parse_args(arguments)
-    return command.run("draw.py", lambda: write_figures(options.dir, options.experiment, kinds_of(options)))
+    return command.run("draw.py", lambda: write_figures(options.dir, kinds_of(options)))
 
 
 if __name__ == "__main__":

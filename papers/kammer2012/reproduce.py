@@ -17,9 +17,10 @@ from typing import Any
 
 import circle
 import slipfront
+import xarray as xr
 from analysis import write_analysis, write_json, write_scorecard
 from commands import Progress, parser_of, run_command
-from drawing.results import read_experiment
+from drawing.results import HIGH_MU_K
 from events import Event
 from scorecard import (
     Claim,
@@ -32,6 +33,7 @@ from scorecard import (
     scorecard,
     summary,
 )
+from slipfront.compare.speeds import read_points
 from slipfront.errors import BlowUpError
 
 from cases import (
@@ -134,6 +136,13 @@ def lines_of(claims: list[Claim]) -> list[str]:
     return [*lines, "", summary(claims), ""]
 
 
+def beside(measured: dict[str, Any] | None, folder: Path) -> xr.Dataset | None:
+    """Measured speeds beside those of the run with mu_k = 1.0."""
+    if measured is None:
+        return None
+    return slipfront.compare_speeds([slipfront.open(folder / HIGH_MU_K)], measured)
+
+
 def given_triggers(options: Namespace) -> TriggerSample | None:
     if options.open_choices is None:
         return None
@@ -148,8 +157,7 @@ def given_triggers(options: Namespace) -> TriggerSample | None:
 
 def reproduce(options: Namespace) -> list[str]:
     """Lines to print."""
-    waves = slipfront.case(Path(__file__).with_name("spontaneous.toml")).wave_speeds
-    experiment = options.experiment and read_experiment(options.experiment, waves.c_L_m_per_s)
+    measured = options.experiment and read_points(options.experiment)
     triggers = given_triggers(options)
     events, around, loaded = (
         paper_cases(options.quick),
@@ -174,7 +182,7 @@ def reproduce(options: Namespace) -> list[str]:
         runs = Reproduction(
             **of_events(four),
             studies=of_studies,
-            experiment=experiment,
+            experiment=beside(measured, batch.folder),
             triggers=triggers,
             loaded_on=loaded_on,
         )
@@ -183,7 +191,8 @@ def reproduce(options: Namespace) -> list[str]:
             there = runner.run(runs_of_variation(variation))
             # The triggers were not sampled on other meshes.
             of_studies = by_study(variation.studies, there[len(EVENTS) :])
-            others = Reproduction(**of_events(there), studies=of_studies, experiment=experiment)
+            of_experiment = beside(measured, batch.folder / "variations" / variation.name)
+            others = Reproduction(**of_events(there), studies=of_studies, experiment=of_experiment)
             add_variation(claims, variation, scorecard(others))
         if varied:
             laps.end("variations of mesh and step")

@@ -25,6 +25,11 @@ if TYPE_CHECKING:
     from slipfront._core import WellPosedness as WellPosedness
     from slipfront.batch import Batch as Batch
     from slipfront.batch import event_of_history as event_of_history
+    from slipfront.compare.cycles import compare_cycles as compare_cycles
+    from slipfront.compare.cycles import events_of_force as events_of_force
+    from slipfront.compare.onsets import compare_onsets as compare_onsets
+    from slipfront.compare.speeds import compare_speeds as compare_speeds
+    from slipfront.compare.traces import compare_traces as compare_traces
     from slipfront.contour import ContourIntegral as ContourIntegral
     from slipfront.contour import contour_integral as contour_integral
     from slipfront.cutting import read_recorders as read_recorders
@@ -37,7 +42,6 @@ if TYPE_CHECKING:
     from slipfront.fracture import fracture_of_history as fracture_of_history
     from slipfront.fracture import predict_fronts as predict_fronts
     from slipfront.gauges import Gauge as Gauge
-    from slipfront.gauges import compare_gauges as compare_gauges
     from slipfront.gauges import gauges_of as gauges_of
     from slipfront.gauges import read_gauges as read_gauges
     from slipfront.measures import FrontSettings as FrontSettings
@@ -83,12 +87,16 @@ _NAMES = {
         "WellPosedness"
     ),
     "batch": "Batch event_of_history",
+    "compare.cycles": "compare_cycles events_of_force",
+    "compare.onsets": "compare_onsets",
+    "compare.speeds": "compare_speeds",
+    "compare.traces": "compare_traces",
     "contour": "ContourIntegral contour_integral",
     "cutting": "read_recorders write_records",
     "errors": "BlowUpError CaseError Error WriteError",
     "files": "DataError",
     "fracture": "fracture_of_history predict_fronts",
-    "gauges": "Gauge compare_gauges gauges_of read_gauges",
+    "gauges": "Gauge gauges_of read_gauges",
     "measures": (
         "FrontSettings criteria falls_while_rises find_fronts find_fronts_in_history fit_exponential "
         "rank_correlation ratio_at_equal_x spread_at_equal_x"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Records of strain gauges, of an experiment or a run's probes, and both beside each other. docs/gauges.md
+"""Records of strain gauges, of an experiment or a run's probes. docs/gauges.md
 
 SI units; strain_xy is half the engineering shear strain, stress positive in tension; y counts from the
 interface."""
@@ -14,8 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
-from scipy.optimize import minimize_scalar
 
 from slipfront.errors import CaseError
 from slipfront.files import DataError, one_line, read_table
@@ -38,7 +36,7 @@ STRAINS = {"": 1.0, "strain": 1.0, "ustrain": 1e-6, "microstrain": 1e-6, "mstrai
 #: A smooth top that a converter shows as k equal samples falls by at most (1 + 2/k)^2 of a digit within
 #: the next sample, and one of rounding: from 3 samples on below 4 digits. What falls faster was cut off.
 TOP_SAMPLES, TOP_DIGITS = 3, 4
-LEAST_SHARED = 0.5  # of the shorter of record and run
+LAGS = 6  # of a low-pass of first order that count
 GAUGE_NAMES = ("gauge", "name", "probe", "station")
 WANTED = (
     "gauge, x, y and time with their units and strain_xx, strain_yy, strain_xy, three strain_ANGLE of a "
@@ -208,6 +206,13 @@ def gaussian(width: float) -> np.ndarray:
     return weights / weights.sum()
 
 
+def amplifier(bandwidth_Hz: float, step_s: float) -> np.ndarray:
+    """Weights of a low-pass of first order, of the present sample and those before."""
+    lag = 1 / (2 * np.pi * bandwidth_Hz * step_s)  # in samples
+    past = np.exp(-np.arange(max(np.ceil(LAGS * lag), 1)) / lag)
+    return past / past.sum()
+
+
 def smooth(values: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     return np.convolve(values, kernel, "valid")
 
@@ -360,124 +365,3 @@ def gauges_of(run: OpenRun, *, stress: bool = False) -> list[Gauge]:
             Gauge(str(name), float(at.x_m), float(at.y_m), probes.time_s.to_numpy(), values, not stress)
         )
     return found
-
-
-def at_place(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
-    """Times, and a run's probes at a gauge's place [its components, times]: a probe there, or linear between
-    two of its height that are no farther apart than this; through the filter of the record."""
-    computed = [g for g in gauges_of(run, stress=not gauge.is_strain) if abs(g.y_m - gauge.y_m) < 1e-6]
-    parts = [part for part in COMPONENTS if part in gauge.values]
-    left = max((g for g in computed if g.x_m <= gauge.x_m + 1e-6), key=lambda g: g.x_m, default=None)
-    right = min((g for g in computed if g.x_m >= gauge.x_m - 1e-6), key=lambda g: g.x_m, default=None)
-    if left is None or right is None or right.x_m - left.x_m > abs(gauge.y_m) + 1e-6:
-        raise CaseError(
-            f"{run.folder}: no probe at gauge {gauge.name}, x = {gauge.x_m:g}, y = {gauge.y_m:g} m, nor two "
-            "of this height on both sides, no farther apart than it"
-        )
-    share = (
-        0.0
-        if right.x_m - left.x_m < 1e-9
-        else float(np.clip((gauge.x_m - left.x_m) / (right.x_m - left.x_m), 0, 1))
-    )
-    values = {part: (1 - share) * left.values[part] + share * right.values[part] for part in parts}
-    time_s = left.time_s
-    if gauge.smoothing_s > 0:
-        time_s, values = filtered(time_s, values, gauge.smoothing_s)
-    return time_s, np.array([values[part] for part in parts])
-
-
-class Beside:
-    """A gauge's record and what a run computes there."""
-
-    def __init__(self, gauge: Gauge, run: OpenRun) -> None:
-        self.gauge = gauge
-        self.parts = [part for part in COMPONENTS if part in gauge.values]
-        self.time_s = gauge.time_s
-        self.measured = np.array([gauge.values[part] for part in self.parts])
-        self.run_s, self.computed = at_place(run, gauge)
-
-    def differences(self, shift_s: float) -> tuple[np.ndarray, np.ndarray]:
-        """Measured less computed where both are, on the run's clock = the gauge's + shift, and the record;
-        each about its own mean: gauges have no known zero. [components, times]"""
-        own_s = self.time_s + shift_s
-        both = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
-        shared_s = np.ptp(own_s[both]) if both.any() else 0.0
-        if shared_s < LEAST_SHARED * min(np.ptp(own_s), np.ptp(self.run_s)):
-            return np.empty((len(self.parts), 0)), np.empty((len(self.parts), 0))
-        record = self.measured[:, both]
-        computed = np.array([np.interp(own_s[both], self.run_s, row) for row in self.computed])
-        less = [a - a.mean(axis=1, keepdims=True) for a in (record - computed, record)]
-        return less[0], less[1]
-
-    def misfit(self, shift_s: float) -> np.ndarray:
-        """Of each component: rms of the difference over that of the record; infinite where they share few
-        times."""
-        difference, record = self.differences(shift_s)
-        if difference.shape[1] == 0:
-            return np.full(len(self.parts), np.inf)
-        return np.sqrt((difference**2).mean(axis=1) / np.maximum((record**2).mean(axis=1), 1e-300))
-
-
-def best_shift(besides: list[Beside], within_s: float) -> float:
-    """That of the least mean square of all misfits, from even shifts, then between the neighbours."""
-
-    def cost(shift_s: float) -> float:
-        return float(np.mean([np.mean(b.misfit(shift_s) ** 2) for b in besides]))
-
-    if within_s == 0:
-        return 0.0
-    step = min(float(np.median(np.diff(b.time_s))) for b in besides)
-    n = int(np.ceil(within_s / max(step, within_s / 500)))
-    shifts = np.linspace(-within_s, within_s, 2 * n + 1)
-    k = int(np.argmin([cost(s) for s in shifts]))
-    ends = shifts[max(k - 1, 0)], shifts[min(k + 1, 2 * n)]
-    refined = minimize_scalar(cost, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x
-    return float(min((shifts[k], refined), key=cost))
-
-
-def compare_gauges(gauges: Iterable[Gauge], run: OpenRun, *, within_s: float = 50e-6) -> xr.Dataset:
-    """A run's probes beside records at the same places: what is left between them, and the shift of clocks.
-
-    within_s: the largest shift that is tried; 0: none. The probes pass the filter that `prepared` has put on
-    a record.
-
-    Returns a Dataset over gauge and component: misfit at the shift common to all, rms of the difference over
-    that of the record, both about their means, 0 where they agree; own_misfit at each gauge's own shift;
-    shift_s and own_shift_s: the run's clock less the record's. NaN for components that were not recorded.
-    Its attribute notes says what speaks against the comparison."""
-    instance(run, OpenRun, "run")
-    given = some_gauges(gauges)
-    if apart := [g.name for g in given if g.parts[0] not in COMPONENTS]:
-        raise CaseError(
-            f"gauge {apart[0]}: its arms are kept apart; compare it by xx, yy, xy, or without places of arms"
-        )
-    besides = [Beside(gauge, run) for gauge in given]
-    within = number(within_s, "within_s", least=0, finite=True)
-    shift = best_shift(besides, within)
-    if not np.isfinite([b.misfit(shift) for b in besides][0]).all():
-        raise CaseError(
-            f"records and run share less than half of their times at each shift of the clock up to within_s "
-            f"= {within:g} s; widen it, or move the records' clock by shift_s, in s"
-        )
-    own = [best_shift([b], within) for b in besides]
-    misfits = {name: np.full((len(besides), 3), np.nan) for name in ("misfit", "own_misfit")}
-    for k, b in enumerate(besides):
-        at = [COMPONENTS.index(part) for part in b.parts]
-        misfits["misfit"][k, at], misfits["own_misfit"][k, at] = b.misfit(shift), b.misfit(own[k])
-    shifts = {"all together": shift} | {b.gauge.name: s for b, s in zip(besides, own, strict=True)}
-    ends = [name for name, s in shifts.items() if within > 0 and abs(s) > 0.999 * within]
-    notes = (
-        [f"shift at the end of its range, within_s = {within:g} s: {', '.join(ends)}; widen it"]
-        if ends
-        else []
-    )
-    large = [b.gauge.name for k, b in enumerate(besides) if np.nanmax(misfits["misfit"][k]) > 1]
-    if large:
-        notes.append(f"the run explains nothing of a component of {', '.join(large)}")
-    return xr.Dataset(
-        {name: (("gauge", "component"), values) for name, values in misfits.items()}
-        | {"own_shift_s": ("gauge", own, {"units": "s"}), "shift_s": ((), shift, {"units": "s"})},
-        {"gauge": [b.gauge.name for b in besides], "component": list(COMPONENTS),
-         "x_m": ("gauge", [b.gauge.x_m for b in besides]), "y_m": ("gauge", [b.gauge.y_m for b in besides])},
-        {"notes": notes},
-    )  # fmt: skip

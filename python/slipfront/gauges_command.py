@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`slipfront gauges RECORDS`: the tips of fronts in records of strain gauges, or a run beside them."""
+"""`slipfront gauges RECORDS`: the tips of fronts in records of strain gauges."""
 
 from __future__ import annotations
 
 import argparse
 import warnings
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from slipfront import command
 from slipfront.command import MATERIAL, option
 from slipfront.errors import CaseError
 from slipfront.files import DataError, is_folder
-from slipfront.gauges import COMPONENTS, Gauge, compare_gauges, from_arms, gauges_of, read_gauges
+from slipfront.gauges import COMPONENTS, Gauge, from_arms, gauges_of, read_gauges
 from slipfront.near_tip import ZONES, bodies_of
 from slipfront.opened import OpenRun, open_run
 from slipfront.records import each_event, is_records
@@ -31,16 +31,8 @@ OF_FIT = (
 #: Names in messages and their options.
 OPTIONS = (
     "speed_m_per_s", "one_speed", "direction", "zone", "zone_m", "r_max_m", "passages", "low_pass_Hz",
-    "zero_s", "window_s", "shift_s", "within_s", "event",
+    "zero_s", "window_s", "shift_s", "event",
 )  # fmt: skip
-
-
-#: Those that count in a fit, and in a comparison, alone.
-OF_FITS = (
-    "speed_m_per_s", "one_speed", "direction", "zone", "zone_m", "r_max_m", "no_step", "passages",
-    *MATERIAL, "plane", "base",
-)  # fmt: skip
-OF_COMPARISONS = ("within_s",)
 
 
 def interval(text: str) -> tuple[float, float]:
@@ -65,6 +57,17 @@ def shift(text: str) -> tuple[str | None, float]:
         ) from None
 
 
+def add_preparation(parser: argparse.ArgumentParser) -> Callable[..., Any]:
+    """Options of what is done to records of gauges first, by `prepared`; returns what adds to their group."""
+    add = parser.add_argument_group("preparation of the records").add_argument
+    add("--shift-s", metavar="[GAUGE=]S", type=shift, action="append", default=[],
+        help="added to the times of all gauges, or of one; repeatable")  # fmt: skip
+    add("--zero-s", metavar="FROM,TO", type=interval, help="subtract the mean over these times")
+    add("--low-pass-hz", metavar="F", type=float, help="Gaussian filter without phase; fits and runs pass it")
+    add("--window-s", metavar="FROM,TO", type=interval, help="leave out all other times")
+    return add
+
+
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = command.Parser(
         prog="slipfront gauges",
@@ -75,17 +78,10 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     )
     parser.add_argument("records", metavar="RECORDS", type=Path)
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="CSV table, a row per gauge and "
-                        "front, or of --compare per gauge and component")  # fmt: skip
+                        "front")  # fmt: skip
     parser.add_argument("--figure", metavar="FILE", type=Path, help="records and fits: .png, .pdf or .svg")
-    parser.add_argument("--compare", metavar="DIR", type=Path, help="put the probes of this run beside the "
-                        "records instead of a fit")  # fmt: skip
-    add = parser.add_argument_group("preparation of the records").add_argument
+    add = add_preparation(parser)
     add("--event", metavar="N", type=int, help="of a file of slipfront records: this event alone")
-    add("--shift-s", metavar="[GAUGE=]S", type=shift, action="append", default=[],
-        help="added to the times of all gauges, or of one; repeatable")  # fmt: skip
-    add("--zero-s", metavar="FROM,TO", type=interval, help="subtract the mean over these times")
-    add("--low-pass-hz", metavar="F", type=float, help="Gaussian filter without phase; fits allow for it")
-    add("--window-s", metavar="FROM,TO", type=interval, help="leave out all other times")
     add("--stress", action="store_true", help="of a run: take stress, not strain")
     add = parser.add_argument_group("fit").add_argument
     add("--speed-m-per-s", metavar="V", type=float, help="of the front; by default fitted")
@@ -104,18 +100,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         add(option(name), dest=name, type=float)
     add("--plane", choices=("stress", "strain"), help="by default stress")
     add("--base", choices=("equal", "rigid"), help="an equal body, the default, or a rigid plane")
-    add = parser.add_argument_group("comparison").add_argument
-    add("--within-s", metavar="S", type=float, default=50e-6, help="largest shift of clocks that is "
-        "tried, by default 50e-6")  # fmt: skip
-    options = parser.parse_args(arguments)
-    others: tuple[str, ...] = OF_COMPARISONS
-    of = "a comparison: give --compare DIR, or leave it out"
-    if options.compare is not None:
-        others, of = OF_FITS, "a fit: leave it out beside --compare"
-    for name in others:
-        if getattr(options, name) != parser.get_default(name):
-            parser.error(f"{option(name)} is an option of {of}")
-    return options
+    return parser.parse_args(arguments)
 
 
 def bodies(options: argparse.Namespace, run: OpenRun | None) -> Any:
@@ -240,28 +225,6 @@ def line_of(fits: list[TipFit]) -> str:
     return in_words("; ".join([f"{told}, {Gamma}, {residual}", *doubts]))
 
 
-def lines_of_comparison(found: xr.Dataset) -> list[str]:
-    lines = [f"run's clock less the records': {1e6 * float(found.shift_s):.2f} us"]
-    for name in found.gauge.values:
-        at = found.sel(gauge=name)
-        parts = [p for p in COMPONENTS if at.misfit.sel(component=p) == at.misfit.sel(component=p)]
-        told = ", ".join(f"{p} {100 * float(at.misfit.sel(component=p)):.0f} %" for p in parts)
-        own = ", ".join(f"{p} {100 * float(at.own_misfit.sel(component=p)):.0f} %" for p in parts)
-        lines.append(f"{name}: misfit {told}; by its own clock, {1e6 * float(at.own_shift_s):.2f} us, {own}")
-    return [*lines, *(in_words(note) for note in found.attrs["notes"])]
-
-
-def rows_of_comparison(found: xr.Dataset) -> list[dict[str, Any]]:
-    at_gauge = ("x_m", "y_m", "own_shift_s")
-    return [
-        {"gauge": str(name), "component": part, "shift_s": float(found.shift_s)}
-        | {of: float(found[of].sel(gauge=name)) for of in at_gauge}
-        | {of: float(found[of].sel(gauge=name, component=part)) for of in ("misfit", "own_misfit")}
-        for name in found.gauge.values
-        for part in COMPONENTS
-    ]
-
-
 def events_of(options: argparse.Namespace, run: OpenRun | None) -> list[tuple[str, list[Gauge]]]:
     """What stands before the lines of an event, and its gauges."""
     if run is None and is_records(options.records):
@@ -307,12 +270,6 @@ def work(options: argparse.Namespace) -> list[str]:
     for head, read in events:
         gauges, told = prepared(read, options)
         notes += [head + note for note in told]
-        if options.compare is not None:
-            beside = open_run(options.compare)
-            found = compare_gauges(gauges, beside, within_s=options.within_s)
-            lines += [head + line for line in lines_of_comparison(found)]
-            rows += rows_of_comparison(found)
-            continue
         of_event, fits = fitted(gauges, options, run)
         is_strain = {gauge.name: gauge.is_strain for gauge in gauges}
         lines += [head + line for line in of_event]
@@ -321,22 +278,13 @@ def work(options: argparse.Namespace) -> list[str]:
     if options.output is not None:
         text = pd.DataFrame(rows).to_csv(index=False, lineterminator="\n")
         command.write_own(options.output, MARK, text, "a table of slipfront gauges")
-    if (
-        options.figure is not None
-        and options.compare is None
-        and not any(f.has_tip for _, _, fits in shown for f in fits)
-    ):
+    if options.figure is not None and not any(f.has_tip for _, _, fits in shown for f in fits):
         notes.append(f"{options.figure}: not drawn: no gauge has a fit")
     elif options.figure is not None:
         from slipfront.figures.drawing import write_results
-        from slipfront.figures.gauges import draw_comparison, draw_fits
+        from slipfront.figures.gauges import draw_fits
 
-        def draw(_: Path) -> Any:
-            if options.compare is None:
-                return draw_fits(shown)
-            return draw_comparison(gauges, beside, float(found.shift_s))
-
-        notes = [*notes, *write_results(options.figure, options.records, draw)]
+        notes += write_results(options.figure, options.records, lambda _: draw_fits(shown))
     return [*lines, *notes]
 
 

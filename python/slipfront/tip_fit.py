@@ -19,7 +19,7 @@ from scipy.optimize import least_squares
 
 from slipfront import _core
 from slipfront.errors import CaseError
-from slipfront.gauges import COMPONENTS, Gauge, gaussian, smooth, some_gauges, weights
+from slipfront.gauges import COMPONENTS, Gauge, amplifier, gaussian, smooth, some_gauges, weights
 from slipfront.given import flag, instance, number, shown, whole
 from slipfront.near_tip import Bodies, TipField, bodies_of, require_field
 from slipfront.opened import OpenRun
@@ -55,7 +55,6 @@ WINDOWS = 6  # of times, each for the zone that the one before has found
 #: Lengths of the zone that are tried, from this share of the height to this of the reach, one over the other.
 SHORTEST, LONGEST, RATIO = 0.1, 2.0, 1.6
 BESIDE = (0.86, 0.97, 1.03, 1.16)  # and beside the best one, over that, for its interval
-LAGS = 6  # of a low-pass of first order that count
 
 
 @dataclass(frozen=True)
@@ -168,9 +167,7 @@ class Record:
         self.kernel = gaussian(gauge.smoothing_s / self.step_s)
         self.n_to_come = len(self.kernel) // 2
         if gauge.bandwidth_Hz < np.inf:
-            lag = 1 / (2 * np.pi * gauge.bandwidth_Hz * self.step_s)  # in samples
-            past = np.exp(-np.arange(np.ceil(LAGS * lag)) / lag)
-            self.kernel = np.convolve(self.kernel, past / past.sum())
+            self.kernel = np.convolve(self.kernel, amplifier(gauge.bandwidth_Hz, self.step_s))
 
     def inside(self, speed: float, tip_s: float, reach_m: float) -> np.ndarray:
         """Indices of the times at which the gauge is in reach of the tip."""

@@ -556,7 +556,7 @@ def test_values_of_runs_that_differ_are_marked_by_run(output):
         assert f'<td><b>{value}</b> <span class="note">{run}</span></td>' in html
 
 
-# Missing data, experimental data
+# Missing data
 
 
 def test_run_without_fronts_is_drawn(output):
@@ -577,15 +577,6 @@ def test_lines_break_at_empty_cells(output):
     (at,) = np.flatnonzero(np.abs(front_rows(output, "left", 1)["x_m"] - 0.1) < 1e-6)
     points = np.column_stack(line.get_data())
     assert np.isnan(points[at]).all() and np.isfinite(points[at + 1]).all()
-
-
-@pytest.mark.parametrize("column, factor", [("v_over_c_L", 1.0), ("v_m_per_s", C_L)])
-def test_experiment_is_drawn_over_figure_2(pristine, tmp_path, column, factor):
-    file = tmp_path / "measured.csv"
-    write_csv(file, ["static_ratio", column], [[0.7, 0.25 * factor], [1.1, 0.5 * factor]])
-    points = artist(criteria.static_ratio_mu_k(read_results(pristine, file)).figure, "experiment")
-    np.testing.assert_allclose(points.get_xdata(), [0.7, 1.1])
-    np.testing.assert_allclose(points.get_ydata(), [0.25, 0.5])
 
 
 # Errors: one clear line, exit code 2
@@ -673,12 +664,3 @@ def test_snapshots_that_are_none_give_one_line(output, capsys):
     assert "right/fields.vtkhdf: no snapshots" in one_error(capsys, output)
 
 
-@pytest.mark.parametrize(
-    "text, says", [(None, "No such file"), ("static_ratio\n1\n", "'v_over_c_L' or 'v_m_per_s'")]
-)
-def test_bad_experiment_gives_one_line(output, tmp_path, capsys, text, says):
-    file = tmp_path / "measured.csv"
-    if text is not None:
-        file.write_text(text)
-    error = one_error(capsys, output, "--experiment", file)
-    assert str(file) in error and says in error

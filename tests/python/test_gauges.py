@@ -634,36 +634,6 @@ def test_the_fracture_energy_of_a_run(run, fits):
     assert of_stress.Gamma_J_per_m2 == pytest.approx(1.1, rel=0.4)
 
 
-def test_a_run_beside_its_own_probes(run):
-    found = slipfront.compare_gauges(slipfront.gauges_of(run), run)
-    assert float(found.shift_s) == 0 and found.notes == []
-    assert np.all(found.misfit == 0) and np.all(found.own_misfit == 0)
-
-
-def test_the_shift_of_clocks_is_found(run):
-    shifted = [g.prepared(shift_s=-7.3e-6, window_s=(20e-6, 110e-6)) for g in slipfront.gauges_of(run)]
-    found = slipfront.compare_gauges(shifted, run)
-    # Rows of probes lie at steps, so that both are linear between other times.
-    assert float(found.shift_s) == pytest.approx(7.3e-6, abs=1e-9)
-    assert float(found.misfit.max()) < 1e-2
-    filtered = [g.prepared(low_pass_Hz=200e3) for g in shifted]
-    assert float(slipfront.compare_gauges(filtered, run).misfit.max()) < 2e-2
-    late = dataclasses.replace(shifted[0], time_s=shifted[0].time_s + 5e-6)
-    found = slipfront.compare_gauges([late, *shifted[1:]], run)
-    assert list(found.own_shift_s) == pytest.approx([2.3e-6, 7.3e-6, 7.3e-6, 7.3e-6], abs=1e-9)
-
-
-def test_places_between_probes(run):
-    computed = slipfront.gauges_of(run)
-    with pytest.raises(slipfront.CaseError, match="no probe at gauge A"):
-        slipfront.compare_gauges([dataclasses.replace(computed[0], name="A", x_m=0.0975)], run)
-    with pytest.raises(slipfront.CaseError, match=r"up to within_s = 5e-05 s; widen it, or move"):
-        slipfront.compare_gauges([computed[0].prepared(shift_s=1.0)], run)
-    late = computed[0].prepared(shift_s=-4e-6)
-    (note,) = slipfront.compare_gauges([late], run, within_s=2e-6).notes
-    assert note.startswith("shift at the end of its range, within_s = 2e-06 s: ") and "widen it" in note
-
-
 def test_the_front_of_a_run_where_no_tip_is_found(run):
     fit = slipfront.fit_tip(dataclasses.replace(noise_alone(), x_m=0.1075), EQUAL)
     told = gauges_command.with_fronts_of_run(fit, run).doubts[1]
@@ -697,20 +667,11 @@ def test_the_command(run, fits, tmp_path, capsys):
         for row in zip(*columns, strict=True)
     ]
     records.write_text("\n".join(["x_m,y_m,time_s,strain_xx,strain_yy,strain_xy", *rows]))
-    assert gauges_command.main([str(records), "--compare", str(run.folder), "-o", str(table)]) == 0
-    assert "misfit xx 0 %, yy 0 %, xy 0 %" in capsys.readouterr().out
     assert gauges_command.main([str(records), *OPTIONS, "--low-pass-hz", "3e5", "--zero-s", ",2e-5"]) == 0
     assert "the filter leaves" in capsys.readouterr().out
 
-    late = ["--compare", run.folder, "--shift-s=-4e-6", "--within-s", "2e-6"]
-    assert gauges_command.main([str(a) for a in (records, *late)]) == 0
-    assert "end of its range, --within-s = 2e-06 s: " in capsys.readouterr().out
     of_record = (records, *OPTIONS)
     for arguments, said in (
-        (
-            (records, "--compare", run.folder, "--shift-s", "1"),
-            "up to --within-s = 5e-05 s; widen it, or move the",
-        ),
         ((records,), "a record needs its bodies: give --youngs-modulus-pa, "),
         ((run.folder, *OPTIONS), "a run has its own bodies; leave out --youngs-modulus-pa, --poissons-ratio"),
         ((*of_record, "--shift-s", "B=1"), "names the gauge 'B'"),
@@ -726,9 +687,6 @@ def test_the_command(run, fits, tmp_path, capsys):
 @pytest.mark.parametrize(
     "options, why",
     [
-        (["--within-s", "1e-6"], "--within-s is an option of a comparison: give --compare DIR, or"),
-        (["--compare", "out", "--passages", "2"], "--passages is an option of a fit: leave it out"),
-        (["--compare", "out", "--plane", "strain"], "--plane is an option of a fit"),
         (["--zero-s", "1;2"], "'1;2' is not FROM,TO in s; give such as 0,20e-6"),
         (["--zero-s", "1"], "'1' is not FROM,TO in s"),
         (["--shift-s", "A=2us"], r"'A=2us' is not \[GAUGE=\]S with S in s; give such as 2e-6"),
@@ -812,7 +770,7 @@ GIVEN = record()
         (lambda: slipfront.fit_tips([None], EQUAL), r"gauges\[0\] is None; it must be a slipfront.Gauge"),
         (lambda: slipfront.fit_tips([GIVEN], EQUAL, passages=None), "passages is None"),
         (lambda: slipfront.fit_tips([GIVEN], EQUAL, speed_m_per_s=[1]), r"speed_m_per_s is \[1\]"),
-        (lambda: slipfront.compare_gauges([GIVEN], None), "run is None; it must be a slipfront.OpenRun"),
+        (lambda: slipfront.compare_traces([GIVEN], None), "run is None; it must be a slipfront.OpenRun"),
         (lambda: slipfront.tip_field(EQUAL, None, 0, speed_m_per_s=1, Gamma_J_per_m2=1), "x_m is None"),
         (lambda: slipfront.tip_field(EQUAL, 0, 0, speed_m_per_s=None, Gamma_J_per_m2=1), "per_s is None"),
         (

@@ -16,7 +16,6 @@ import pytest
 import slipfront.command
 from common import WITH_PACKAGE, call, call_script, refusal
 from common import one_line as line_of
-from drawing.results import read_experiment
 from refusals import one_error, one_line
 from slipfront.figures import interface_step
 from slipfront.figures.__main__ import main
@@ -113,9 +112,9 @@ def test_comments_bom_and_spaces_are_read(tmp_path):
     file.write_bytes(
         b"\xef\xbb\xbf# measured by hand\r\nstatic_ratio, v_over_c_L\r\n# first\r\n0.7, 0.5\r\n\r\n0.8,"
     )
-    ratio, v = read_experiment(file, 1000.0)
-    np.testing.assert_array_equal(ratio, [0.7, 0.8])
-    np.testing.assert_array_equal(v, [0.5, np.nan])
+    table = read_table(file, by_hand=True)
+    np.testing.assert_array_equal(table.numbers("static_ratio"), [0.7, 0.8])
+    np.testing.assert_array_equal(table.numbers("v_over_c_L"), [0.5, np.nan])
 
 
 @pytest.mark.parametrize(

@@ -167,24 +167,15 @@ def static_ratio_mu_k(results: Results) -> Drawing:
         for way, words in ((1, "front along the shear"), (-1, "front against the shear"))
     ]
     handles.append(paper_style.pale_handle(event.colour))
-    measured = "No file of experimental data was given, so none are drawn."
-    if results.experiment is not None:
-        x, y = results.experiment
-        look: style.Look = {"linestyle": "none", "marker": "x", "color": "0.3", "zorder": 1}
-        handles += ax.plot(x, y, label="experiment", gid="experiment", **look)
-        measured = f"Crosses: the {np.isfinite(x * y).sum()} points of the experimental data file given."
-    else:
-        place: style.Look = {"xycoords": "axes fraction", "va": "bottom", "color": "0.45"}
-        ax.annotate("no experimental data given", (0.015, 0.02), **place)
     ax.set(xlabel=paper_style.STATIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, run)
-    style.legend_below(figure, handles, 3 if results.experiment is None else 4)
+    style.legend_below(figure, handles, 3)
     return Drawing(
         "fig2_static_ratio_mu_k_1.0",
         figure,
         f"Front speed against the static stress ratio, μ<sub>k</sub> = {run.parameter('friction.mu_k')}: "
         "solid along the imposed shear, dashed against it. Thin horizontal lines: wave speeds. "
-        f"{SELECTION}{outside} {measured}",
+        f"{SELECTION}{outside}",
     )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table, read_table
+from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table
 from slipfront.folder import belongs, located, result_file
 from slipfront.opened import OpenRun, open_run
 
@@ -68,7 +68,6 @@ class Results:
     paper_a_band: float
     studies: list[Study]
     timings: list[tuple[str, float]]  # part of the work, wall time in s; empty where none are told
-    experiment: tuple[np.ndarray, np.ndarray] | None  # measured t_s / p_s, V_tip / c_L
 
     @property
     def events(self) -> list[OpenRun]:
@@ -153,17 +152,7 @@ def read_timings(file: Path) -> list[tuple[str, float]]:
     return [(str(row["part"]), number(file, row, "wall_s")) for row in rows]
 
 
-def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Measured points (t_s / p_s, V_tip / c_L) from the columns static_ratio and v_over_c_L or v_m_per_s."""
-    table = read_table(file, by_hand=True)
-    if "v_over_c_L" in table.header:
-        return table.numbers("static_ratio"), table.numbers("v_over_c_L")
-    if "v_m_per_s" in table.header:
-        return table.numbers("static_ratio"), table.numbers("v_m_per_s") / c_L_m_per_s
-    raise DataError(f"{file}: no column 'v_over_c_L' or 'v_m_per_s'")
-
-
-def read_results(folder: Path, experiment: Path | None = None) -> Results:
+def read_results(folder: Path) -> Results:
     """A folder of `reproduce.py`."""
     if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; DIR is of `reproduce.py`, `study` or `run`")
@@ -172,7 +161,6 @@ def read_results(folder: Path, experiment: Path | None = None) -> Results:
     analysis = read_json_table(result_file(file))
     if not isinstance(analysis.get("fit", 0), dict | None):
         raise DataError(f"{file}: no entry 'fit'")
-    points = read_experiment(experiment, runs[HIGH_MU_K].c_L_m_per_s) if experiment else None
     return Results(
         folder=folder,
         runs=runs,
@@ -184,5 +172,4 @@ def read_results(folder: Path, experiment: Path | None = None) -> Results:
         paper_a_band=number(file, analysis, "paper_fit.a_band"),
         studies=read_studies(file, analysis),
         timings=read_timings(folder / "timings.json"),
-        experiment=points,
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Records of strain gauges with the fitted field of a tip, or with what a run computes there."""
+"""Records of strain gauges with the fitted field of a tip."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from matplotlib.lines import Line2D
 from slipfront.errors import CaseError
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
-from slipfront.gauges import COMPONENTS, Beside, Gauge
-from slipfront.opened import OpenRun
+from slipfront.gauges import COMPONENTS, Gauge
 from slipfront.tip_fit import TipFit
 
 MEASURED, MODEL, TOGETHER = "0.55", "#d55e00", "#0072b2"
@@ -82,23 +81,3 @@ def draw_fits(events: list[tuple[str, list[Gauge], list[TipFit]]]) -> Drawing:
     is_joint = any(fit.together > 1 for _, _, _, fits in shown for fit in fits)
     more = ((TOGETHER, "fitted to all gauges together"),) if is_joint else ()
     return rows_of_panels([gauge for _, gauge, _, _ in shown], draw, labels + more)
-
-
-def draw_comparison(gauges: list[Gauge], run: OpenRun, shift_s: float) -> Drawing:
-    besides = [Beside(gauge, run) for gauge in gauges[:MOST_ROWS]]
-
-    def draw(row: int, k: int, ax: Axes, part: str, factor: float) -> str:
-        beside = besides[row]
-        i = beside.parts.index(part)
-        own_s = beside.time_s + shift_s
-        both = (own_s >= beside.run_s[0]) & (own_s <= beside.run_s[-1])
-        computed = np.interp(own_s[both], beside.run_s, beside.computed[i])
-        measured = beside.measured[i, both]
-        ax.plot(1e6 * own_s[both], factor * (measured - measured.mean()), color=MEASURED)
-        ax.plot(1e6 * own_s[both], factor * (computed - computed.mean()), color=MODEL)
-        misfit = ", ".join(
-            f"{p} {100 * m:.0f} %" for p, m in zip(beside.parts, beside.misfit(shift_s), strict=True)
-        )
-        return f"{plain(beside.gauge.name)}, $x$ = {1e3 * beside.gauge.x_m:.4g} mm: misfit {misfit}"
-
-    return rows_of_panels([b.gauge for b in besides], draw, ((MEASURED, "record"), (MODEL, "run")))

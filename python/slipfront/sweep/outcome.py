@@ -105,13 +105,23 @@ class Slipped:
         """Those that leave the zone in which the trigger makes the nodes slip."""
         return [front for front in self.run.front_list if self.length_m(front) > self.rounding_m]
 
-    def speeds(self, front: Front) -> np.ndarray:
-        """V_tip/c_L where something travels: where `speed_kind` says so, away from absorbing edges."""
+    def travels(self, front: Front) -> np.ndarray:
+        """Where something travels: where `speed_kind` says so, away from absorbing edges. [points]"""
         is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty where the file has none
         for from_m, to_m in self.heard_m:
             is_speed &= (front.x_m < from_m) | (front.x_m > to_m)
-        found = front.v_tip_m_per_s[is_speed] / self.run.c_L_m_per_s
-        return found[~np.isnan(found)]
+        return is_speed & ~np.isnan(front.v_tip_m_per_s)
+
+    def speeds(self, front: Front) -> np.ndarray:
+        """V_tip/c_L where something travels."""
+        return front.v_tip_m_per_s[self.travels(front)] / self.run.c_L_m_per_s
+
+    def points(self, front: Front) -> np.ndarray:
+        """t_s/p_s and V_tip in m/s where something travels by itself. [2, points]"""
+        own = self.travels(front)
+        for from_m, to_m in self.driven_m:
+            own &= (front.x_m < from_m) | (front.x_m > to_m)
+        return np.array([front.static_ratio[own], front.v_tip_m_per_s[own]])
 
     @property
     def longest(self) -> Front | None:

@@ -1,0 +1,455 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs, sequences and sweeps beside records: what is left between them, its error, and what is refused."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import h5py
+import numpy as np
+import pandas as pd
+import pytest
+import slipfront
+from common import built, rows_of
+from package_cases import PLATE, TILT, results_of, write_case
+from slipfront.compare import command
+from slipfront.compare.onsets import onsets_at
+from slipfront.compare.speeds import points_of
+from slipfront.records import Writer
+from slipfront.sweep import run as run_sweep
+
+PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180}
+BLOCKS = {
+    "plate": {"width_m": 0.15, "corner": "none", "element_size_m": 2e-3, "height_m": 0.06,
+              "sides": "absorbing", "top": "absorbing"},
+    "material": {"stiffness_damping_s": 0.1e-6, **PMMA},
+    "base": {"kind": "body", "height_m": 0.06, "sides": "absorbing", "bottom": "absorbing",
+             "stiffness_damping_s": 0.1e-6, **PMMA},
+    "loading": {"method": "prestress"},
+    "prestress": {"t_Pa": 1.8e6, "p_Pa": 5e6},
+    "friction": {"law": "slip_weakening", "mu_s": 0.5, "mu_k": 0.3, "d_c_m": 4e-6},
+    "event": {"kind": "nucleation"},
+    "nucleation": {"form": "weakened", "x_m": 0.03, "half_length_m": 0.025, "taper_m": 5e-3},
+    "time": {"end_s": 180e-6, "quiet_s": float("inf")},
+    "probes": {"x_m": [0.0875, 0.1075, 0.1275, 0.109], "y_m": [5e-3, 5e-3, 5e-3, 5e-3],
+               "names": ["SG1", "SG2", "SG3", "beside"], "interval_s": 0.25e-6},
+}  # fmt: skip
+SEQUENCE = f"""\
+{PLATE}{TILT}plate.element_size_m = 4e-3
+event.kind = "spontaneous"
+sequence.max_events = 6
+"""
+PLACES_M = np.linspace(0.07, 0.145, 12)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A front between two blocks of PMMA."""
+    return slipfront.run(BLOCKS, output=tmp_path_factory.mktemp("compare") / "out")
+
+
+@pytest.fixture(scope="module")
+def sequence(tmp_path_factory):
+    return slipfront.open(results_of(tmp_path_factory.mktemp("cycles"), SEQUENCE))
+
+
+def record_of(run, shift_s=0.0, factor=1.0, error_s=0.0, seed=1):
+    """Onsets as this run has them, on a clock that is late by -shift_s and runs by a factor."""
+    noise_s = error_s * np.random.default_rng(seed).standard_normal(len(PLACES_M))
+    return {"x_m": PLACES_M, "onset_s": factor * onsets_at(run, PLACES_M) - shift_s + noise_s}
+
+
+# Onsets
+
+
+def test_onsets_of_the_run_itself(run):
+    found = slipfront.compare_onsets(run, record_of(run, shift_s=7e-6))
+    assert float(found.shift_s) == pytest.approx(7e-6, abs=1e-12)
+    assert float(found.misfit_of_all) < 1e-12 and int(found.n) == len(PLACES_M) and found.notes == []
+    assert float(found.time_ratio) == pytest.approx(1, abs=1e-6)
+    slower = slipfront.compare_onsets(run, record_of(run, factor=0.8))
+    assert float(slower.time_ratio) == pytest.approx(1.25)
+    assert float(slower.misfit_of_all) == pytest.approx(
+        0.2 * np.std(onsets_at(run, PLACES_M), ddof=1), rel=1e-9
+    )
+
+
+def test_onsets_are_those_of_the_first_front_that_passes(run):
+    fronts = run.fronts
+    at = np.unique(fronts.x_m.values)[20]
+    first = fronts.onset_s.values[np.isclose(fronts.x_m.values, at)].min()
+    assert onsets_at(run, np.array([at, -1.0]))[0] == pytest.approx(first, abs=1e-15)
+    assert np.isnan(onsets_at(run, np.array([at, -1.0]))[1])
+
+
+def test_errors_of_onsets_are_those_of_many_records(run):
+    made = [slipfront.compare_onsets(run, record_of(run, error_s=1e-6, seed=k)) for k in range(300)]
+    values = {name: np.array([float(found[name]) for found in made])
+              for name in ("misfit_of_all", "shift_s", "time_ratio")}  # fmt: skip
+    assert np.sqrt(np.mean(values["misfit_of_all"] ** 2)) == pytest.approx(1e-6, rel=0.05)
+    for name, of in values.items():
+        told = np.median([float(found[f"{name}_error"]) for found in made])
+        assert told == pytest.approx(of.std(), rel=0.15)
+    weighted = slipfront.compare_onsets(run, record_of(run, error_s=1e-6) | {"error_s": np.full(12, 1e-6)})
+    assert float(weighted.misfit_of_all) == pytest.approx(float(made[1].misfit_of_all))
+    assert float(weighted.reduced_chi2) == pytest.approx(float(weighted.misfit_of_all) ** 2 / 1e-12)
+
+
+def test_an_onset_weighs_by_its_error(run):
+    record = record_of(run) | {"error_s": np.full(12, 1e-7)}
+    record["onset_s"][3] += 1e-3
+    record["error_s"][3] = 1.0
+    assert float(slipfront.compare_onsets(run, record).misfit_of_all) < 1e-8
+
+
+def test_places_that_only_one_has(run):
+    record = record_of(run)
+    record["x_m"] = np.array([-0.01, *record["x_m"][1:]])
+    record["onset_s"][-1] = np.nan
+    found = slipfront.compare_onsets(run, record)
+    assert int(found.n) == 10 and np.isnan(found.run_s[0])
+    assert found.notes == [
+        "no front of the run passes 1 place of the record, x = -0.01 m",
+        "fronts of the run pass, and slip is not recorded at, 1 place of the record, x = 0.145 m",
+    ]
+    none = slipfront.compare_onsets(run, {"x_m": [-2.0, -1.0], "onset_s": [0.0, 1.0]})
+    assert int(none.n) == 0 and np.isnan(none.misfit_of_all)
+
+
+# Traces
+
+
+def test_a_run_beside_its_own_probes(run):
+    found = slipfront.compare_traces(slipfront.gauges_of(run), run)
+    assert float(found.shift_s) == 0 and found.notes == []
+    assert np.all(found.misfit == 0) and np.all(found.own_misfit == 0)
+    assert float(found.misfit_of_all) == 0
+
+
+def test_the_shift_of_clocks_is_found(run):
+    shifted = [g.prepared(shift_s=-7.3e-6, window_s=(20e-6, 110e-6)) for g in slipfront.gauges_of(run)]
+    found = slipfront.compare_traces(shifted, run)
+    # Rows of probes lie at steps, so that both are linear between other times.
+    assert float(found.shift_s) == pytest.approx(7.3e-6, abs=1e-9)
+    assert float(found.misfit.max()) < 1e-2
+    filtered = [g.prepared(low_pass_Hz=200e3) for g in shifted]
+    assert float(slipfront.compare_traces(filtered, run).misfit.max()) < 2e-2
+    late = dataclasses.replace(shifted[0], time_s=shifted[0].time_s + 5e-6)
+    found = slipfront.compare_traces([late, *shifted[1:]], run)
+    assert list(found.own_shift_s) == pytest.approx([2.3e-6, 7.3e-6, 7.3e-6, 7.3e-6], abs=1e-9)
+
+
+def test_the_error_of_a_misfit_is_that_of_many_records(run):
+    (gauge, *_) = slipfront.gauges_of(run)
+    noise = 0.5 * gauge.values["xy"].std()
+    made = []
+    for seed in range(150):
+        rng = np.random.default_rng(seed)
+        noisy = {"xy": gauge.values["xy"] + noise * rng.standard_normal(len(gauge.time_s))}
+        made.append(slipfront.compare_traces([dataclasses.replace(gauge, values=noisy)], run, within_s=0))
+    values = np.array([float(found.misfit_of_all) for found in made])
+    assert values.mean() == pytest.approx(0.5 / np.sqrt(1.25), rel=0.03)
+    # That of the record's own power, in the denominator, counts as well; it is as large, and against it.
+    told = np.mean([float(found.misfit_of_all_error) for found in made])
+    assert 0.5 * values.std() < told < 2 * values.std()
+
+
+def test_arms_at_places_of_their_own_see_the_run_there(run):
+    there, beside = (next(g for g in slipfront.gauges_of(run) if g.name == n) for n in ("SG2", "beside"))
+    shear = {"45": there.values, "-45": beside.values}
+    values = {
+        arm: 0.5 * (of["xx"] + of["yy"]) + (1 if arm == "45" else -1) * of["xy"] for arm, of in shear.items()
+    }
+    places = {"45": (there.x_m, there.y_m), "-45": (beside.x_m, beside.y_m)}
+    gauge = slipfront.Gauge("rosette", there.x_m, there.y_m, there.time_s, values, places_m=places)
+    found = slipfront.compare_traces([gauge], run)
+    assert list(found.component.values) == ["45", "-45"] and float(found.misfit.max()) < 1e-9
+    together = dataclasses.replace(gauge, places_m={})
+    assert float(slipfront.compare_traces([together], run).misfit.max()) > 0.05
+
+
+def test_the_run_passes_the_amplifier_of_the_record(run):
+    gauge = slipfront.gauges_of(run)[0]
+    lag_s, step_s = 4e-6, float(np.diff(gauge.time_s).mean())
+    kept = np.exp(-step_s / lag_s)
+    slow = {}
+    for part, values in gauge.values.items():
+        passed = [values[0]]
+        for value in values[1:]:
+            passed.append(kept * passed[-1] + (1 - kept) * value)
+        slow[part] = np.array(passed)
+    recorded = dataclasses.replace(gauge, values=slow, bandwidth_Hz=1 / (2 * np.pi * lag_s))
+    assert float(slipfront.compare_traces([recorded], run, within_s=0).misfit.max()) < 1e-2
+    without = dataclasses.replace(recorded, bandwidth_Hz=np.inf)
+    assert float(slipfront.compare_traces([without], run, within_s=0).misfit.max()) > 0.1
+
+
+def test_slip_sensors(run):
+    nodes = run.x_m[[40, 41]]
+    slip = run.history.slip_m.isel(x_m=[40, 41]).mean("x_m").to_numpy()
+    channel = slipfront.Channel(
+        "eddy", "slip", "eddy", run.history.time_s.to_numpy() - 3e-6, slip + 1e-6, x_m=float(nodes.mean())
+    )
+    found = slipfront.compare_traces([channel], run)
+    assert float(found.shift_s) == pytest.approx(3e-6, abs=1e-9) and float(found.misfit_of_all) < 1e-6
+    with pytest.raises(slipfront.CaseError, match="eddy records slip at x = 1 m; the interface goes from 0"):
+        slipfront.compare_traces([dataclasses.replace(channel, x_m=1.0)], run)
+
+
+def test_places_between_probes(run):
+    computed = slipfront.gauges_of(run)
+    with pytest.raises(slipfront.CaseError, match="no probe at gauge A"):
+        slipfront.compare_traces([dataclasses.replace(computed[0], name="A", x_m=0.0975)], run)
+    with pytest.raises(slipfront.CaseError, match=r"up to within_s = 5e-05 s; widen it, or move"):
+        slipfront.compare_traces([computed[0].prepared(shift_s=1.0)], run)
+    late = computed[0].prepared(shift_s=-4e-6)
+    (note,) = slipfront.compare_traces([late], run, within_s=2e-6).notes
+    assert note.startswith("shift at the end of its range, within_s = 2e-06 s: ") and "widen it" in note
+
+
+# Speeds
+
+
+def test_speeds_of_the_run_itself(sequence):
+    event = max(sequence.runs, key=lambda of: of.fronts.sizes.get("point", 0))
+    ratio, speed = points_of(event, "static_ratio")
+    at = np.array([np.median(ratio), ratio.max() + 0.5])
+    median = np.median(speed[np.abs(ratio - at[0]) <= 0.02])
+    found = slipfront.compare_speeds([event], {"static_ratio": at, "v_m_per_s": [1.25 * median, 1.0]})
+    assert found.v_runs.values == pytest.approx([median, np.nan], nan_ok=True)
+    assert float(found.misfit_of_all) == pytest.approx(0.2) and int(found.n) == 1
+    assert float(found.deviation_of_all) == pytest.approx(-0.2)
+    over_c_L = {"static_ratio": at[:1], "v_over_c_L": [median / event.c_L_m_per_s]}
+    assert float(slipfront.compare_speeds([event], over_c_L).misfit_of_all) == pytest.approx(0, abs=1e-12)
+
+
+def test_speeds_over_the_ratio_of_the_forces(sequence):
+    found = slipfront.compare_speeds(
+        [sequence], {"friction_before": sequence.events.friction_before.values, "v_m_per_s": np.ones(6)},
+        ratio_within=5e-3,
+    )  # fmt: skip
+    runs = [points_of(run, "friction_before") for run in sequence.runs]
+    known = [of for of in runs if of.size]
+    assert known and all(np.abs(of[0] - sequence.events.friction_before.values).min() < 5e-3 for of in known)
+    assert int(found.n) >= len(known)
+
+
+@pytest.mark.parametrize(
+    "record, why",
+    [
+        ({"static_ratio": [1.0]}, "the record has none of v_m_per_s, v_over_c_L; give one of them"),
+        ({"static_ratio": [1.0], "friction_before": [1.0], "v_m_per_s": [1.0]}, "has static_ratio and fric"),
+        ({"static_ratio": [1.0], "v_m_per_s": [0.0]}, "v_m_per_s of the record must be above 0"),
+        ({"static_ratio": [1.0, 2.0], "v_m_per_s": [1.0]}, "must be of one length"),
+    ],
+)
+def test_points_that_are_refused(run, record, why):
+    with pytest.raises(slipfront.CaseError, match=why):
+        slipfront.compare_speeds([run], record)
+
+
+# Cycles of stick-slip
+
+
+def cycles_as_recorded(sequence):
+    events = sequence.events
+    return {
+        "begin_s": events.begin_s.values, "friction_before": events.friction_before.values,
+        "friction_after": events.friction_after.values, "slip_m": events.mean_slip_m.values,
+        "duration_s": events.slip_s.values,
+    }  # fmt: skip
+
+
+def test_cycles_of_the_sequence_itself(sequence):
+    record = cycles_as_recorded(sequence)
+    found = slipfront.compare_cycles(sequence, record, skip_events=0)
+    assert found.ratio.values == pytest.approx(np.ones(5)) and float(found.misfit_of_all) == 0
+    drop = record["friction_before"] - record["friction_after"]
+    counts = drop >= 0.1 * drop.max()
+    assert found.n_record.sel(quantity="drop") == counts.sum()
+    assert float(found.mean_record.sel(quantity="drop")) == pytest.approx(drop[counts].mean())
+    at = found.sel(quantity="slip_m")
+    slips = record["slip_m"][counts]
+    assert float(at.deviation_record) == pytest.approx(slips.std(ddof=1))
+    assert float(at.mean_error_record) == pytest.approx(slips.std(ddof=1) / np.sqrt(len(slips)))
+    twice = slipfront.compare_cycles(sequence, record | {"slip_m": 2 * record["slip_m"]}, skip_events=0)
+    assert float(twice.ratio.sel(quantity="slip_m")) == pytest.approx(0.5)
+    assert float(twice.misfit_of_all) == pytest.approx(0.5 / np.sqrt(5))
+
+
+def test_forces_and_stresses_are_those_of_the_sequence(sequence):
+    events, loading = sequence.events, sequence.loading
+    after = loading.shear_force_N_per_m.values[loading.phase.values == "at_rest"]
+    begin_s = {"begin_s": events.begin_s.values}
+    forces = {"force_before_N": 0.01 * events.shear_force_N_per_m.values, "force_after_N": 0.01 * after}
+    found = slipfront.compare_cycles(sequence, begin_s | forces, thickness_m=0.01, skip_events=0)
+    assert found.ratio.values == pytest.approx(np.ones(3)) and list(found.unit.values) == ["s", "N", "N"]
+    width_m = sequence.entry("plate", "width_m")
+    stress = {f"stress_{name}_Pa": 100 * forces[f"force_{name}_N"] / width_m for name in ("before", "after")}
+    found = slipfront.compare_cycles(sequence, begin_s | stress, skip_events=0)
+    assert found.ratio.values == pytest.approx(np.ones(3)) and list(found.unit.values) == ["s", "Pa", "Pa"]
+    with pytest.raises(slipfront.CaseError, match="the record is of a force in N: give thickness_m"):
+        slipfront.compare_cycles(sequence, begin_s | forces, skip_events=0)
+    with pytest.raises(slipfront.CaseError, match="has the shear as force and as stress; give one"):
+        slipfront.compare_cycles(sequence, begin_s | forces | stress)
+    with pytest.raises(slipfront.CaseError, match="two behind the first 9 are needed: set skip_events"):
+        slipfront.compare_cycles(sequence, begin_s | stress, skip_events=9)
+
+
+def test_events_of_a_force():
+    time_s = np.arange(0, 100, 0.02)
+    force_N = 1000 + 100 * np.mod(time_s, 10) + np.random.default_rng(1).normal(0, 2, len(time_s))
+    found = slipfront.events_of_force(time_s, force_N, within_s=0.4)
+    assert found["begin_s"] == pytest.approx(np.arange(10, 100, 10), abs=0.03)
+    assert found["force_before_N"] == pytest.approx(np.full(9, 2000), abs=15)
+    assert found["force_after_N"] == pytest.approx(np.full(9, 1000), abs=15)
+    with pytest.raises(slipfront.Error, match="the force never drops by 0.1 of its range within 0.4 s"):
+        slipfront.events_of_force(time_s, 1000 + time_s, within_s=0.4)
+
+
+# The command
+
+
+def called(capsys, *arguments):
+    assert command.main([str(a) for a in arguments]) == 0
+    return capsys.readouterr().out.splitlines()
+
+
+def refused(capsys, *arguments):
+    assert command.main([str(a) for a in arguments]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    return line
+
+
+@pytest.fixture
+def files(run, tmp_path):
+    """A record of each kind."""
+    made = {name: tmp_path / f"{name}.csv" for name in ("onsets", "gauges", "speeds")}
+    pd.DataFrame(record_of(run, error_s=1e-6) | {"error_s": 1e-6}).rename(
+        columns={"onset_s": "time_s"}
+    ).to_csv(made["onsets"], index=False)
+    gauge = slipfront.gauges_of(run)[0]
+    of = {"x_m": gauge.x_m, "y_m": gauge.y_m, "time_s": gauge.time_s}
+    pd.DataFrame(of | {f"strain_{part}": v for part, v in gauge.values.items()}).to_csv(
+        made["gauges"], index=False
+    )
+    pd.DataFrame({"static_ratio": [0.36, 0.9], "v_m_per_s": [900.0, 900.0]}).to_csv(
+        made["speeds"], index=False
+    )
+    return made
+
+
+def test_a_run_beside_records_of_every_kind(run, files, tmp_path, capsys):
+    page, table = tmp_path / "page.html", tmp_path / "misfits.csv"
+    lines = called(capsys, run.folder, *files.values(), "-o", page, "--table", table)
+    assert lines[0].startswith("onsets.csv: standard deviation of the onsets ")
+    assert " over 12 of 12 places, their variance " in lines[0] and " times as long" in lines[0]
+    assert lines[1] == "gauges.csv: misfit 0 %, the run's clock less the record's 0.00 us"
+    assert lines[2].startswith("gauges.csv: gauge: misfit xx 0 %, yy 0 %, xy 0 %; by its own clock, 0.00 us")
+    assert " over the 1 of 2 points within the range of static_ratio of the run's fronts" in lines[3]
+    rows = rows_of(table)
+    assert [row["record"] for row in rows] == ["onsets.csv", "gauges.csv", "speeds.csv"]
+    assert [row["unit"] for row in rows] == ["s", "1", "1"]
+    text = page.read_text()
+    assert text.count('<img src="data:image/svg+xml;base64,') == 3 and "out beside records" in text
+    assert text.startswith("<!DOCTYPE html>") and "http" not in text.split("<body>")[1].split("<img")[0]
+    called(capsys, run.folder, files["onsets"], "-o", page)  # an earlier page of ours is replaced
+    page.write_text("mine")
+    assert "not replaced" in refused(capsys, run.folder, files["onsets"], "-o", page)
+    assert "not replaced" in refused(capsys, run.folder, files["onsets"], "--table", page)
+    late = ("--shift-s=-4e-6", "--within-s", "2e-6")
+    assert any("end of its range, --within-s = 2e-06 s: " in line
+               for line in called(capsys, run.folder, files["gauges"], *late))  # fmt: skip
+
+
+def test_an_event_of_a_recorder(run, tmp_path, capsys):
+    file, gauge = tmp_path / "records.nc", slipfront.gauges_of(run)[0]
+    with h5py.File(file, "w") as hdf5:
+        writer = Writer(hdf5, {})
+        for number in (1, 2):
+            channels = {
+                f"strain_{p}": slipfront.Channel(
+                    f"SG_{p}",
+                    f"strain_{p}",
+                    "SG",
+                    gauge.time_s,
+                    number * gauge.values[p],
+                    gauge.x_m,
+                    gauge.y_m,
+                )
+                for p in gauge.values
+            }
+            slip = run.history.slip_m.isel(x_m=40).to_numpy()
+            channels["slip"] = slipfront.Channel(
+                "slip", "slip", "slip", run.history.time_s.to_numpy(), number * slip, x_m=float(run.x_m[40])
+            )
+            channels["load"] = slipfront.Channel("load", "force_shear", "load", gauge.time_s, gauge.time_s)
+            for channel in channels.values():
+                writer.put(number, 0.0, channel)
+            writer.end(slipfront.Event(number, 0.0, channels))
+    lines = called(capsys, run.folder, file)
+    assert lines[0].startswith("records.nc, event 1: misfit 0 %")
+    assert "records.nc, event 1: channels of force_shear are not compared" in lines
+    (second,) = (line for line in called(capsys, run.folder, file, "--event", 2) if ": slip: " in line)
+    assert second.startswith("records.nc, event 2: slip: misfit slip 50 %")
+    assert "has no event 3" in refused(capsys, run.folder, file, "--event", 3)
+
+
+def test_the_best_point_of_a_sweep(run, files, tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("SLIPFRONT_PROGRAM", str(built()))
+    case = write_case(tmp_path, {name: of for name, of in BLOCKS.items() if name != "probes"})
+    folder, page, table = tmp_path / "sweep", tmp_path / "page.html", tmp_path / "misfits.csv"
+    run_sweep(case, {"friction.d_c_m": [3e-6, 4e-6, 5e-6]}, folder, quiet=True)
+    lines = called(capsys, folder, files["onsets"], files["speeds"], "-o", page, "--table", table)
+    assert "onsets.csv: least misfit: friction.d_c_m = 4e-06" in lines
+    assert any(line.startswith("speeds.csv: all points: median deviation") for line in lines)
+    rows = rows_of(table)
+    assert [row["friction.d_c_m"] for row in rows[:3]] == ["3e-06", "4e-06", "5e-06"]
+    misfits = [float(row["misfit"]) for row in rows[:3]]
+    assert misfits[1] == min(misfits) and rows[6]["run"] == "all points"
+    assert "Shown: d_c_m=4e-06, the least misfit." in page.read_text()
+    gauges = refused(capsys, folder, files["gauges"])
+    assert "the run has no probes; give its case a table [probes]" in gauges
+
+
+def test_a_sequence_beside_its_force(sequence, files, tmp_path, capsys):
+    record = cycles_as_recorded(sequence)
+    events = tmp_path / "events.csv"
+    pd.DataFrame(record).to_csv(events, index=False)
+    page = tmp_path / "page.html"
+    lines = called(capsys, sequence.folder, events, "--skip-events", 0, "-o", page)
+    assert lines[0] == "events.csv: misfit 0 %"
+    assert lines[1].startswith("events.csv: interval ") and " recorded, 1 +- " in lines[1]
+    assert "<img" in page.read_text()
+    time_s = np.linspace(0, 60, 6001)
+    force = tmp_path / "force.csv"
+    pd.DataFrame({"time_s": time_s, "force_kN": 5 + np.mod(time_s, 10)}).to_csv(force, index=False)
+    given = (sequence.folder, force, "--skip-events", 0)
+    assert "a record of the force: give --drop-within-s" in refused(capsys, *given)
+    assert "give --thickness-m" in refused(capsys, *given, "--drop-within-s", 0.5)
+    lines = called(capsys, *given, "--drop-within-s", 0.5, "--thickness-m", 0.01)
+    assert any(" s beside 10 " in line for line in lines if ": interval " in line)
+    told = refused(capsys, sequence.folder, files["onsets"])
+    assert "is a sequence; name one of its events, such as " in told and "events/0001" in told
+    assert "is a run; cycles are compared with a sequence" in refused(
+        capsys, sequence.folder / "events/0001", events
+    )
+
+
+@pytest.mark.parametrize(
+    "text, why",
+    [
+        ("a,b\n1,2\n", "has the columns 'a', 'b'; wanted are x_m and time_s of onsets"),
+        ("x_m,time_s\n1,\n2,\n", "no row has a time"),
+        ("static_ratio,v_over_c_L\n1,0\n", "v_over_c_L of the record must be above 0"),
+        ("time_s,force_N\n0,1\n", "give --drop-within-s"),
+        ("gauge,x_m,y_m,time_s,strain_xx\nA,1,1,0,\n", "no gauge has values"),
+        ("", "empty"),
+    ],
+)
+def test_records_that_are_refused(run, tmp_path, capsys, text, why):
+    file = tmp_path / "record.csv"
+    file.write_text(text)
+    told = refused(capsys, run.folder, file)
+    assert why in told and "record.csv" in told
+    assert "no such folder" in refused(capsys, tmp_path / "none", file)
