@@ -213,6 +213,11 @@ reference: ready  ## problems that other codes have solved, on several meshes ea
 	$(PYTHON) scripts/compare-reference.py t --program $(PROGRAM) --results $(RESULTS)-reference
 	$(PYTHON) scripts/compare-tpv205.py --program $(PROGRAM) --results $(RESULTS)-reference
 
+.PHONY: laboratory
+laboratory: ready module  ## records beside runs: renews pictures of docs/recorder-to-gamma.md, table and picture of docs/gauges.md
+	PYTHONPATH=python $(PYTHON) scripts/laboratory.py --program $(abspath $(PROGRAM))
+	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/gauge-table.py build/gauge-table
+
 examples: ready  ## the worked cases of examples/, into results-examples/, and their pictures in docs/figures
 	PYTHONPATH=python $(PYTHON) scripts/run-examples.py $(PROGRAM) $(RESULTS)-examples docs/figures
 

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The worked cases of examples/ on coarser meshes: they run to their end and show what their pages say."""
 
-import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 import slipfront
-from common import ROOT, call, require_done, sets
+from common import ROOT, require_done, rows_of, sets
 from slipfront.opened import OpenRun, open_run
 from slipfront.read import Front
 
@@ -155,11 +154,14 @@ def test_two_bodies_prefer_a_direction(run):
 
 
 def test_the_record_tells_d_c(program, tmp_path):
-    command = [sys.executable, EXAMPLES / "experiment/compare.py", tmp_path, "--program", program.path]
-    printed = require_done(call(*command, *sets(f"plate.element_size_m={COARSE_M['experiment']}"))).stdout
-    rows = [tuple(map(float, line.split())) for line in printed.splitlines()[1:]]
+    sweep, table = tmp_path / "out", tmp_path / "misfits.csv"
+    varied = ["--vary", "friction.d_c_m=1.2e-6:2.2e-6:5"]
+    coarse = sets(f"plate.element_size_m={COARSE_M['experiment']}")
+    require_done(program("sweep", EXAMPLES / "experiment/case.toml", "-o", sweep, "-q", *varied, *coarse))
+    require_done(program("compare", sweep, EXAMPLES / "experiment/record.csv", "--table", table))
+    rows = [(float(row["friction.d_c_m"]), float(row["misfit"])) for row in rows_of(table)]
     nearest = min(rows, key=lambda row: row[1])
-    assert len(rows) == 5 and nearest[0] in (1.2, 1.45) and nearest[1] < 0.6
+    assert len(rows) == 5 and nearest[0] in (1.2e-6, 1.45e-6) and nearest[1] < 0.6e-6
 
 
 def test_precursors_grow_with_the_force_until_all_slides_below_mu_s(folder):

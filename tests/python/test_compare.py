@@ -357,6 +357,12 @@ def test_a_run_beside_records_of_every_kind(run, files, tmp_path, capsys):
     page.write_text("mine")
     assert "not replaced" in refused(capsys, run.folder, files["onsets"], "-o", page)
     assert "not replaced" in refused(capsys, run.folder, files["onsets"], "--table", page)
+    picture = tmp_path / "page.png"
+    called(capsys, run.folder, files["onsets"], "-o", picture)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert "a picture is of one record, not of 3" in refused(
+        capsys, run.folder, *files.values(), "-o", picture
+    )
     late = ("--shift-s=-4e-6", "--within-s", "2e-6")
     assert any("end of its range, --within-s = 2e-06 s: " in line
                for line in called(capsys, run.folder, files["gauges"], *late))  # fmt: skip

@@ -662,5 +662,3 @@ def test_damaged_hdf5_gives_one_line(output, capsys, file, dataset):
 def test_snapshots_that_are_none_give_one_line(output, capsys):
     write_fields(output / "right" / "fields.vtkhdf", 40, 20, np.array([]), [])
     assert "right/fields.vtkhdf: no snapshots" in one_error(capsys, output)
-
-

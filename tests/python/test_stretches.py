@@ -13,7 +13,7 @@ from common import ROOT
 from slipfront import fronts_command
 from slipfront.stretches import Onsets, stretches_of
 
-LAB = ROOT / "tests/python/lab"
+LAB = ROOT / "examples/laboratory/onsets"
 EVENTS = sorted(LAB.glob("event*.csv"))
 CASES = ROOT / "tests/cli/cases"
 PLACE_ERROR_M = 5e-3  # of the digitisation

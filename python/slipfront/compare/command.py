@@ -20,7 +20,7 @@ from slipfront.compare.misfit import Estimate, estimate_of
 from slipfront.compare.page import Part, page_of
 from slipfront.compare.speeds import WITHIN
 from slipfront.errors import Error
-from slipfront.figures.drawing import guarded
+from slipfront.figures.drawing import ENDINGS, guarded, write_results
 from slipfront.figures.style import RC
 from slipfront.files import DataError, is_folder
 from slipfront.fronts_command import mark
@@ -87,7 +87,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("dir", metavar="DIR", type=Path, help="results of a run, a sequence or a sweep")
     parser.add_argument("records", metavar="RECORDS", type=Path, nargs="+", help="CSV, .mat, or records.nc")
     add = parser.add_argument
-    add("-o", "--output", metavar="FILE", type=Path, help="a page of HTML: misfits, tables, pictures")
+    add("-o", "--output", metavar="FILE", type=Path, help="a page of HTML: misfits, tables, pictures; or the "
+        "picture of a single record: .png, .pdf or .svg")  # fmt: skip
     add("--table", metavar="FILE", type=Path, help="CSV table of the misfits, a row per record and run")
     add("--event", metavar="N", type=int, help="of records with several events: this one alone")
     add("--never-slipped", metavar="TIME", type=mark, help="as of slipfront fronts")
@@ -191,7 +192,8 @@ def part_of(of: Compared, options: argparse.Namespace) -> Part:
 
 
 def work(options: argparse.Namespace) -> list[str]:
-    if options.output is not None:
+    is_picture = options.output is not None and options.output.suffix.lower() in ENDINGS
+    if options.output is not None and not is_picture:
         require_replaceable(options.output)
     if options.table is not None:
         command.require_own(options.table, MARK.encode(), "a table of slipfront compare")
@@ -212,7 +214,11 @@ def work(options: argparse.Namespace) -> list[str]:
     if options.table is not None:
         text = table.to_csv(index=False, lineterminator="\n")
         command.write_own(options.table, MARK, text, "a table of slipfront compare")
-    if options.output is not None:
+    if is_picture:
+        if len(every) > 1:
+            raise DataError(f"{options.output}: a picture is of one record, not of {len(every)}; write .html")
+        lines += write_results(options.output, options.dir, lambda _: part_of(every[0], options).drawing)
+    elif options.output is not None:
         with matplotlib.rc_context(RC):
             parts = guarded(options.dir, lambda: [part_of(of, options) for of in every])
             page = page_of(options.dir, parts, table if len(targets) > 1 else None)

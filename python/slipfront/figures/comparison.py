@@ -20,16 +20,15 @@ if TYPE_CHECKING:
     from slipfront.opened import OpenRun
 
 RECORD, RUN = "0.35", "#d55e00"
+POINTS: style.Look = {"marker": "o", "markersize": 3, "linestyle": "none"}
+LINE: style.Look = {"linestyle": "-"}
 MOST_ROWS = 8
 UNITS = {"1": (1e6, "µε"), "Pa": (1e-6, "MPa"), "m": (1e6, "µm")}  # of traces
 
 
-def legend(figure: Any, run: str) -> None:
-    handles = [
-        Line2D([], [], color=RECORD, marker="o", markersize=3, linestyle="none", label="record"),
-        Line2D([], [], color=RUN, label=run),
-    ]
-    style.legend_below(figure, handles, 2)
+def legend(figure: Any, record: style.Look, run: style.Look) -> None:
+    of = (("record", RECORD, record), ("run", RUN, run))
+    style.legend_below(figure, [Line2D([], [], color=c, label=name, **look) for name, c, look in of], 2)
 
 
 def draw_onsets(run: OpenRun, found: xr.Dataset) -> Drawing:
@@ -51,7 +50,7 @@ def draw_onsets(run: OpenRun, found: xr.Dataset) -> Drawing:
     look = {"color": RECORD, "markersize": 3.5, "elinewidth": 0.7}
     right.errorbar(place.factor * x_m, rest.factor * residual_s, yerr=error_s, fmt="o", **look)
     right.set(xlabel=f"$x$ ({place.name})", ylabel=f"run less record ({rest.name})")
-    legend(figure, "run")
+    legend(figure, POINTS, LINE)
     return Drawing("onsets", figure, "")
 
 
@@ -77,9 +76,7 @@ def draw_traces(traces: Sequence[Trace], found: xr.Dataset) -> Drawing:
             ax.set_title(head + told, loc="left")
             if row == len(shown) - 1:
                 ax.set_xlabel("$t$ (µs)")
-    style.legend_below(
-        figure, [Line2D([], [], color=RECORD, label="record"), Line2D([], [], color=RUN, label="run")], 2
-    )
+    legend(figure, LINE, LINE)
     return Drawing("traces", figure, "")
 
 
@@ -92,11 +89,7 @@ def draw_speeds(points: np.ndarray, found: xr.Dataset) -> Drawing:
     ax.plot(found[ratio], found["v_record"], "o", color=RECORD, markersize=3.5)
     of = {"static_ratio": r"$t_\mathrm{s}/p_\mathrm{s}$", "friction_before": "shear over normal force before"}
     ax.set(xlabel=of[ratio], ylabel=style.V_LABEL if speed == "v_over_c_L" else f"{style.V_NAME} (m/s)")
-    handles = [
-        Line2D([], [], color=RECORD, marker="o", markersize=3, linestyle="none", label="record"),
-        Line2D([], [], color=RUN, marker=".", linestyle="none", label="runs"),
-    ]
-    style.legend_below(figure, handles, 2)
+    legend(figure, POINTS, POINTS | {"marker": "."})
     return Drawing("speeds", figure, "")
 
 
@@ -113,12 +106,13 @@ def draw_cycles(sides: dict[str, dict[str, np.ndarray]], found: xr.Dataset) -> D
     figure = style.new_figure(style.PAGE_MM, 110 if has_curve else 60)
     axes = figure.subplots(2 if has_curve else 1, 1, squeeze=False)[:, 0]
     if has_curve:
+        unit = found.unit.sel(quantity="before").item()
+        shown = engineering("" if unit == "1" else unit, sides["record"]["before"])
         for of, colour in zip(sides.values(), (RECORD, RUN), strict=True):
             time_s, shear = sawtooth(of)
-            axes[0].plot(time_s - time_s[0], shear, color=colour)
-        unit = found.unit.sel(quantity="before").item()
+            axes[0].plot(time_s - time_s[0], shown.factor * shear, color=colour)
         axes[0].set(xlabel="time since the first event that counts (s)",
-                    ylabel="shear over normal force" if unit == "1" else f"shear ({unit})")  # fmt: skip
+                    ylabel="shear over normal force" if unit == "1" else f"shear ({shown.name})")  # fmt: skip
     ax = axes[-1]
     at = np.arange(len(names))
     for side, colour, off in (("record", RECORD, -0.1), ("sequence", RUN, 0.1)):
@@ -131,5 +125,5 @@ def draw_cycles(sides: dict[str, dict[str, np.ndarray]], found: xr.Dataset) -> D
     ax.axhline(1, **style.REFERENCE)
     ax.set_xticks(at, [NAMES[name] for name in names])
     ax.set(ylabel="over the record's mean", xlim=(-0.5, len(names) - 0.5))
-    legend(figure, "sequence")
+    legend(figure, POINTS | LINE, POINTS | LINE)
     return Drawing("cycles", figure, "")

@@ -31,6 +31,11 @@ MARGIN = 0.4  # of the time of all picks that is shown before and behind
 LEAST_SAMPLES = 40  # shown before and behind
 
 
+def rounded(speed: float) -> str:
+    """To three digits, without a power of ten."""
+    return f"{float(f'{speed:.3g}'):.10g}"
+
+
 def shown_traces(
     event: Event, picks: xr.Dataset, quiet_s: tuple[float, float] | None
 ) -> tuple[str, list[Trace]]:
@@ -67,9 +72,9 @@ def draw_lines(ax: Axes, picks: xr.Dataset, of_time: float, of_place: float) -> 
             linewidth=1.2, zorder=3, path_effects=style.outlined("white", 2.4), gid=f"stretch {k}",
         )  # fmt: skip
         low, high = float(of["speed_low_m_per_s"]), float(of["speed_high_m_per_s"])
-        interval = f" ({low:.3g} to {high:.3g})" if np.isfinite(high) else ""
+        interval = f" ({rounded(low)} to {rounded(high)})" if np.isfinite(high) else ""
         ax.annotate(
-            f"{speed:.3g} m/s{interval}", (of_time * time_s[2], of_place * places[2]), xytext=(-5, 0),
+            f"{rounded(speed)} m/s{interval}", (of_time * time_s[2], of_place * places[2]), xytext=(-5, 0),
             textcoords="offset points", va="center", ha="right", color=style.DIRECTION_COLOURS[way], zorder=4,
             path_effects=style.outlined("white", 2.4),
         )  # fmt: skip
