@@ -64,7 +64,7 @@ def test_gamma_of_all_gauges_is_that_of_the_case(folder):
     known = slipfront.open(folder / "out").fracture
     for row in together:
         assert float(row["Gamma_J_per_m2"]) == pytest.approx(1.1, rel=0.1)  # (mu_s - mu_k) p d_c/2
-        at = int(abs(known.x_m - float(row["x_m"])).argmin())
+        at = int(abs(known.x_m.to_numpy() - float(row["x_m"])).argmin())
         assert float(row["cohesive_zone_m"]) == pytest.approx(float(known.cohesive_zone_m[at]), rel=0.25)
     assert len(together) == 4
 
