@@ -290,6 +290,8 @@ def test_forces_and_stresses_are_those_of_the_sequence(sequence):
     assert found.ratio.values == pytest.approx(np.ones(3)) and list(found.unit.values) == ["s", "Pa", "Pa"]
     with pytest.raises(slipfront.CaseError, match="the record is of a force in N: give thickness_m"):
         slipfront.compare_cycles(sequence, begin_s | forces, skip_events=0)
+    with pytest.raises(slipfront.CaseError, match="thickness_m is of forces in N; the record has the shear"):
+        slipfront.compare_cycles(sequence, begin_s | stress, thickness_m=0.01)
     with pytest.raises(slipfront.CaseError, match="has the shear as force and as stress; give one"):
         slipfront.compare_cycles(sequence, begin_s | forces | stress)
     with pytest.raises(slipfront.CaseError, match="two behind the first 9 are needed: set skip_events"):
@@ -440,6 +442,20 @@ def test_a_sequence_beside_its_force(sequence, files, tmp_path, capsys):
     assert "is a run; cycles are compared with a sequence" in refused(
         capsys, sequence.folder / "events/0001", events
     )
+
+
+@pytest.mark.parametrize(
+    "name, option, why",
+    [
+        ("onsets", "--thickness-m=1", "--thickness-m counts with stick-slip alone, and no record is such"),
+        ("speeds", "--low-pass-hz=1e5", "--low-pass-hz counts with traces alone"),
+        ("speeds", "--event=1", "--event counts with traces, onsets alone"),
+        ("gauges", "--event=1", "has no events: leave out --event"),
+        ("onsets", "--event=1", "has no column 'event'"),
+    ],
+)
+def test_options_that_count_with_no_record(run, files, capsys, name, option, why):
+    assert why in refused(capsys, run.folder, files[name], option)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import xarray as xr
 
 from slipfront import command
 from slipfront.compare.cycles import SKIPPED
-from slipfront.compare.kinds import Kind, Opened, Record, kind_of
+from slipfront.compare.kinds import KINDS, Kind, Opened, Record, kind_of
 from slipfront.compare.misfit import Estimate, estimate_of
 from slipfront.compare.page import Part, page_of
 from slipfront.compare.speeds import WITHIN
@@ -102,6 +102,18 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         f"both sides, by default {SKIPPED}")  # fmt: skip
     add_preparation(parser)
     return parser.parse_args(arguments)
+
+
+def require_of_use(options: argparse.Namespace, kinds: set[Kind]) -> None:
+    """Refuses options that count with no record that is given."""
+    plain = vars(parse([str(options.dir), *map(str, options.records)]))
+    of_use = {name for kind in kinds for name in kind.options}
+    for name in {name for kind in KINDS for name in kind.options} - of_use:
+        if getattr(options, name) != plain[name]:
+            of = ", ".join(kind.name.lower() for kind in KINDS if name in kind.options)
+            raise DataError(
+                f"{command.option(name)} counts with {of} alone, and no record is such; leave it out"
+            )
 
 
 def targets_in(folder: Path) -> list[Target]:
@@ -206,6 +218,7 @@ def work(options: argparse.Namespace) -> list[str]:
             for kind in [kind_of(file)]
             for record in kind.read(file, options)
         ]
+    require_of_use(options, {kind for kind, _ in read})
     every = [compared(kind, record, targets, options) for kind, record in read]
     lines = [str(told.message) for told in passed_over]
     for of in every:

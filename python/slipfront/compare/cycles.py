@@ -143,6 +143,10 @@ def both_sides(
     skipped = whole(skip_events, "skip_events", least=0)
     if thickness_m is not None:
         number(thickness_m, "thickness_m", above=0, finite=True)
+        if form != "force":
+            raise CaseError(
+                f"thickness_m is of forces in N; the record has the shear as {form}: leave it out"
+            )
     of_record = {"begin_s": column(record, "record", "begin_s")}
     shear = {name: name_of(form, name) for name in ("before", "after", "drop")}
     for name, called in ({"slip_m": "slip_m", "duration_s": "duration_s"} | shear).items():

@@ -72,6 +72,7 @@ class Kind(Protocol):
 
     name: str
     pools: bool  # whether several runs are compared together
+    options: tuple[str, ...]  # those of the command that count with it
 
     def holds(self, names: Sequence[str]) -> bool:
         """Whether columns of these names, in small letters and without their units, are of this kind."""
@@ -105,12 +106,15 @@ def one_run(runs: list[Opened]) -> OpenRun:
 class Traces:
     name = "Traces"
     pools = False
+    options: tuple[str, ...] = ("within_s", "shift_s", "zero_s", "low_pass_hz", "window_s", "event")
 
     def holds(self, names: Sequence[str]) -> bool:
         return any(name.startswith(("strain", "eps", "gamma_xy", "stress_", "sigma_")) for name in names)
 
     def read(self, file: Path, options: argparse.Namespace) -> list[Record]:
         if not is_records(file):
+            if options.event is not None:
+                raise DataError(f"{file}: has no events: leave out --event")
             gauges, told = prepared(read_gauges(file), options)
             return [Record(file.name, gauges, tuple(told))]
         found = [self.of_event(file, event, options) for event in each_event(file)
@@ -157,6 +161,7 @@ class Traces:
 class Speeds:
     name = "Speed over stress ratio"
     pools = True
+    options: tuple[str, ...] = ("ratio_within",)
 
     def holds(self, names: Sequence[str]) -> bool:
         return not {*RATIOS}.isdisjoint(names) and not {v.lower() for v in SPEEDS}.isdisjoint(names)
@@ -189,6 +194,7 @@ class Speeds:
 class Cycles:
     name = "Stick-slip"
     pools = False
+    options: tuple[str, ...] = ("thickness_m", "drop_within_s", "skip_events")
 
     def holds(self, names: Sequence[str]) -> bool:
         of_cycles = {called for q in OF_CYCLES for called in OF_CYCLES[q][0]} - {"time", "t"}
@@ -198,6 +204,8 @@ class Cycles:
         table = read_table(file, by_hand=True, separators=SEPARATORS)
         bare = {name_and_unit(name)[0] for name in table.header}
         if not bare & set(OF_FORCE["force"][0]):
+            if options.drop_within_s is not None:
+                raise DataError(f"{file}: is a table of events: leave out --drop-within-s")
             return [Record(file.name, columns_in(file, OF_CYCLES, ("begin_s",)))]
         found = columns_in(file, OF_FORCE, ("time_s", "force"))
         if options.drop_within_s is None:
@@ -240,6 +248,7 @@ class Cycles:
 class Onsets:
     name = "Onsets"
     pools = False
+    options: tuple[str, ...] = ("never_slipped", "event")
 
     def holds(self, names: Sequence[str]) -> bool:
         return any(name in OF_ONSETS for name in names)

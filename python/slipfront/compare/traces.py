@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -21,6 +21,7 @@ from slipfront.tip_fit import correlated
 LEAST_SHARED = 0.5  # of the shorter of record and run
 SAME_PLACE_M = 1e-6
 MOST_SHIFTS = 500  # to each side, before the best is refined
+MOST_TIMES = 5000  # of a trace in that search
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,11 @@ class Trace:
     measured: np.ndarray  # [parts, times]
     run_s: np.ndarray
     computed: np.ndarray  # [parts, times of the run]
+
+    def thinned(self) -> Trace:
+        """With no more than MOST_TIMES of its record."""
+        each = -(-len(self.time_s) // MOST_TIMES)
+        return replace(self, time_s=self.time_s[::each], measured=self.measured[:, ::each])
 
     def both(self, shift_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Where both are: times, measured, computed, on the run's clock = the record's + shift, each about
@@ -140,17 +146,19 @@ def traces_of(records: Iterable[Gauge | Channel], run: OpenRun) -> list[Trace]:
 
 
 def best_shift(traces: list[Trace], within_s: float) -> float:
-    """That of the least mean square of all misfits, from even shifts, then between the neighbours."""
+    """That of the least mean square of all misfits: of even shifts, by some of the times, then between the
+    neighbours of the best by all."""
 
-    def cost(shift_s: float) -> float:
-        return float(np.mean([np.mean(trace.misfit(shift_s) ** 2) for trace in traces]))
+    def cost(shift_s: float, of: list[Trace] = traces) -> float:
+        return float(np.mean([np.mean(trace.misfit(shift_s) ** 2) for trace in of]))
 
     if within_s == 0:
         return 0.0
     step = min(float(np.median(np.diff(trace.time_s))) for trace in traces)
     n = int(np.ceil(within_s / max(step, within_s / MOST_SHIFTS)))
     shifts = np.linspace(-within_s, within_s, 2 * n + 1)
-    k = int(np.argmin([cost(s) for s in shifts]))
+    thin = [trace.thinned() for trace in traces]
+    k = int(np.argmin([cost(s, thin) for s in shifts]))
     ends = shifts[max(k - 1, 0)], shifts[min(k + 1, 2 * n)]
     refined = minimize_scalar(cost, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x
     return float(min((shifts[k], refined), key=cost))
