@@ -225,7 +225,14 @@ def peak(trace: Trace, times_noise: float) -> Onset | str:
     if flat := trace.flat_within(first_s, last_s):
         half_s = (flat[1] - flat[0]) / 2
         return Onset(flat[0] + half_s, float(np.hypot(half_s, trace.step_s / 2)), "its top was cut off")
-    return made
+    beside = np.abs(trace.time_s - made.time_s) > last_s - first_s
+    means = smoothed(sign * trace.values, HOLD)
+    as_high = trace.time_s[beside & (means > np.interp(made.time_s, trace.time_s, means) - trace.noise)]
+    if not as_high.size or made.doubt:
+        return made
+    far_s = max(as_high - made.time_s, key=abs)
+    doubt = f"as high within the noise {1e6 * abs(far_s):.3g} us {'later' if far_s > 0 else 'earlier'}"
+    return made._replace(error_s=float(np.hypot(made.error_s, far_s)), doubt=doubt)
 
 
 def threshold(trace: Trace, times_noise: float) -> Onset | str:
