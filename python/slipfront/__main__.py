@@ -7,7 +7,7 @@ import importlib
 import os
 import sys
 
-from slipfront.command import REFUSED, report_error, run
+from slipfront.command import INTERRUPTED, REFUSED, report_error, run
 from slipfront.errors import NEEDS_MODULE, Error
 from slipfront.program import program
 
@@ -54,6 +54,9 @@ def main(arguments: list[str]) -> int:
     except ModuleNotFoundError as error:
         report_error("slipfront", missing(name, (error.name or "").split(".")[0]))
         return REFUSED
+    except KeyboardInterrupt:
+        report_error("slipfront", f"{name}: interrupted")
+        return INTERRUPTED
     except ImportError as error:
         if not (error.msg or "").startswith("cannot import name '_core'"):
             raise

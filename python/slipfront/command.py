@@ -148,7 +148,7 @@ def require_own(file: Path, mark: bytes, what: str) -> None:
         with open_file(file) as stream:
             beginning = stream.read(len(mark))
         if beginning != mark:
-            raise DataError(f"{file}: is there and not {what}: not replaced; give another name with -o")
+            raise DataError(f"{file}: is there and not {what}: not replaced; give another name")
 
 
 def write_own(file: Path, mark: str, text: str, what: str) -> None:

@@ -125,28 +125,11 @@ class Gauge:
 
         low_pass_Hz: of a Gaussian filter without phase, at which it lets 0.71 pass. Where times are uneven
         the record is first interpolated to even ones. A fit passes its field through the same filter."""
-        time_s = self.time_s + number(shift_s, "shift_s", finite=True)
-        values = dict(self.values)
-        smoothing_s = self.smoothing_s
-        if zero_s is not None:
-            inside = between(time_s, zero_s, f"gauge {self.name}: zero_s")
-            values = {name: v - v[inside].mean() for name, v in values.items()}
-        if low_pass_Hz is not None:
-            cut_off = number(low_pass_Hz, "low_pass_Hz", above=0, finite=True)
-            lowest = 1 / (time_s[-1] - time_s[0])
-            highest = 0.5 * (len(time_s) - 1) * lowest
-            if not lowest <= cut_off <= highest:
-                raise CaseError(
-                    f"low_pass_Hz is {cut_off:g} Hz; the record of {self.name} resolves {lowest:.4g} to "
-                    f"{highest:.4g} Hz: give one of these"
-                )
-            own_s = np.sqrt(np.log(2)) / (2 * np.pi * cut_off)
-            time_s, values = filtered(time_s, values, own_s)
-            smoothing_s = float(np.hypot(smoothing_s, own_s))
-        if window_s is not None:
-            inside = between(time_s, window_s, f"gauge {self.name}: window_s")
-            time_s, values = time_s[inside], {name: v[inside] for name, v in values.items()}
+        time_s, values, own_s = worked_on(
+            f"gauge {self.name}", self.time_s, dict(self.values), shift_s, zero_s, low_pass_Hz, window_s
+        )
         flat_s = [(first + shift_s, last + shift_s) for first, last in self.flat_s]
+        smoothing_s = float(np.hypot(self.smoothing_s, own_s))
         return self.changed(flat_s, time_s=time_s, values=values, smoothing_s=smoothing_s)
 
     def peak(self, part: str) -> float:
@@ -199,6 +182,37 @@ def between(time_s: np.ndarray, ends_s: tuple[float, float], name: str) -> np.nd
     return inside
 
 
+def worked_on(
+    of: str,
+    time_s: np.ndarray,
+    values: dict[str, np.ndarray],
+    shift_s: float,
+    zero_s: tuple[float, float] | None,
+    low_pass_Hz: float | None,
+    window_s: tuple[float, float] | None,
+) -> tuple[np.ndarray, dict[str, np.ndarray], float]:
+    """Times and values as Gauge.prepared makes them, and the standard deviation of the filter."""
+    time_s, own_s = time_s + number(shift_s, "shift_s", finite=True), 0.0
+    if zero_s is not None:
+        inside = between(time_s, zero_s, f"{of}: zero_s")
+        values = {name: v - v[inside].mean() for name, v in values.items()}
+    if low_pass_Hz is not None:
+        cut_off = number(low_pass_Hz, "low_pass_Hz", above=0, finite=True)
+        lowest = 1 / (time_s[-1] - time_s[0])
+        highest = 0.5 * (len(time_s) - 1) * lowest
+        if not lowest <= cut_off <= highest:
+            raise CaseError(
+                f"low_pass_Hz is {cut_off:g} Hz; the record of {of.removeprefix('gauge ')} resolves "
+                f"{lowest:.4g} to {highest:.4g} Hz: give one of these"
+            )
+        own_s = float(np.sqrt(np.log(2)) / (2 * np.pi * cut_off))
+        time_s, values = filtered(time_s, values, own_s)
+    if window_s is not None:
+        inside = between(time_s, window_s, f"{of}: window_s")
+        time_s, values = time_s[inside], {name: v[inside] for name, v in values.items()}
+    return time_s, values, own_s
+
+
 def gaussian(width: float) -> np.ndarray:
     """Of a standard deviation in samples, an odd number of them."""
     n = int(np.ceil(4 * width))
@@ -206,10 +220,10 @@ def gaussian(width: float) -> np.ndarray:
     return weights / weights.sum()
 
 
-def amplifier(bandwidth_Hz: float, step_s: float) -> np.ndarray:
-    """Weights of a low-pass of first order, of the present sample and those before."""
+def amplifier(bandwidth_Hz: float, step_s: float, n: int) -> np.ndarray:
+    """Weights of a low-pass of first order, of the present one of n samples and those before."""
     lag = 1 / (2 * np.pi * bandwidth_Hz * step_s)  # in samples
-    past = np.exp(-np.arange(max(np.ceil(LAGS * lag), 1)) / lag)
+    past = np.exp(-np.arange(min(max(np.ceil(LAGS * lag), 1), n)) / lag)
     return past / past.sum()
 
 

@@ -120,7 +120,8 @@ def bodies(options: argparse.Namespace, run: OpenRun | None) -> Any:
     return {"material": given, "base": base}
 
 
-def prepared(gauges: list[Gauge], options: argparse.Namespace) -> tuple[list[Gauge], list[str]]:
+def prepared(gauges: list[Any], options: argparse.Namespace) -> tuple[list[Any], list[str]]:
+    """Gauges, or others that are prepared and have peaks as they do."""
     names = {gauge.name for gauge in gauges}
     for name, _ in options.shift_s:
         if name is not None and name not in names:
@@ -144,8 +145,8 @@ def prepared(gauges: list[Gauge], options: argparse.Namespace) -> tuple[list[Gau
 
 
 def in_components(of: dict[str, float]) -> dict[str, Any]:
-    """Of components or of arms."""
-    if not of or next(iter(of)) in COMPONENTS:
+    """Of components or of three arms; one arm or two make none."""
+    if len(of) != 3 or next(iter(of)) in COMPONENTS:
         return of
     made = from_arms({float(arm): np.array([value]) for arm, value in of.items()})
     return {part: float(value[0]) for part, value in made.items()}

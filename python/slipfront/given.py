@@ -149,6 +149,14 @@ def array(values: Any, name: str, *, dims: int = 1, finite: bool = False) -> np.
     return made
 
 
+def holds(values: Any, of: str, name: str) -> bool:
+    """Whether a dictionary or data set has an array of this name."""
+    try:
+        return name in values
+    except TypeError:
+        raise CaseError(f"{of} is {shown(values)}; it must be a dictionary or data set of arrays") from None
+
+
 def column(values: Any, of: str, name: str, *, dims: int = 1, finite: bool = False) -> np.ndarray:
     """An array of a dictionary or data set of arrays, by its name."""
     try:

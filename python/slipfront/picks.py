@@ -204,7 +204,10 @@ def top_of(time_s: np.ndarray, values: np.ndarray, noise: float, top: int) -> tu
 
 
 def top_before_fall(trace: Trace, times_noise: float) -> tuple[int, int] | None:
-    """The sample with the largest value of either sign from which the trace falls most, and the sign."""
+    """The sample with the largest value of either sign from which the trace falls most, and the sign.
+
+    A tip's peak is followed by a dip, from which the trace comes back: of both signs that of the earlier top
+    counts, unless it falls by less than half of the other."""
     found = []
     for sign in (1, -1):
         w = sign * trace.values
@@ -212,7 +215,8 @@ def top_before_fall(trace: Trace, times_noise: float) -> tuple[int, int] | None:
         least = times_noise * trace.noise
         if w[first] > least and w[first] - w[last] > 2 * least:  # noise alone falls by some 8 times itself
             found.append((float(w[first] - w[last]), first, sign))
-    return max(found)[1:] if found else None
+    most = max((fall for fall, *_ in found), default=0.0)
+    return min(((first, sign) for fall, first, sign in found if 2 * fall >= most), default=None)
 
 
 def peak(trace: Trace, times_noise: float) -> Onset | str:

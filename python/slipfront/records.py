@@ -171,9 +171,7 @@ def require_own(file: Path) -> None:
         except DataError:
             is_own = False
         if not is_own:
-            raise DataError(
-                f"{file}: is there and no records of slipfront: not replaced; give another name with -o"
-            )
+            raise DataError(f"{file}: is there and no records of slipfront: not replaced; give another name")
 
 
 def text_of(attributes: Any, name: str) -> str:

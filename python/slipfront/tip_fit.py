@@ -167,7 +167,9 @@ class Record:
         self.kernel = gaussian(gauge.smoothing_s / self.step_s)
         self.n_to_come = len(self.kernel) // 2
         if gauge.bandwidth_Hz < np.inf:
-            self.kernel = np.convolve(self.kernel, amplifier(gauge.bandwidth_Hz, self.step_s))
+            self.kernel = np.convolve(
+                self.kernel, amplifier(gauge.bandwidth_Hz, self.step_s, len(self.time_s))
+            )
 
     def inside(self, speed: float, tip_s: float, reach_m: float) -> np.ndarray:
         """Indices of the times at which the gauge is in reach of the tip."""

@@ -87,9 +87,17 @@ def test_errors_of_onsets_are_those_of_many_records(run):
     values = {name: np.array([float(found[name]) for found in made])
               for name in ("misfit_of_all", "shift_s", "time_ratio")}  # fmt: skip
     assert np.sqrt(np.mean(values["misfit_of_all"] ** 2)) == pytest.approx(1e-6, rel=0.05)
+    # How residuals of neighbours are alike, 12 places tell roughly.
     for name, of in values.items():
         told = np.median([float(found[f"{name}_error"]) for found in made])
-        assert told == pytest.approx(of.std(), rel=0.15)
+        assert 0.85 * of.std() < told < 1.4 * of.std()
+    smooth = [record_of(run) for _ in range(200)]
+    for k, record in enumerate(smooth):
+        phase, wave = 2 * np.pi * np.random.default_rng(k).random(), np.linspace(0, 4, len(PLACES_M))
+        record["onset_s"] = record["onset_s"] + 1e-6 * np.sin(wave + phase)
+    shifts = [slipfront.compare_onsets(run, record) for record in smooth]
+    spread = np.std([float(found.shift_s) for found in shifts])
+    assert np.median([float(found.shift_s_error) for found in shifts]) > 0.4 * spread
     weighted = slipfront.compare_onsets(run, record_of(run, error_s=1e-6) | {"error_s": np.full(12, 1e-6)})
     assert float(weighted.misfit_of_all) == pytest.approx(float(made[1].misfit_of_all))
     assert float(weighted.reduced_chi2) == pytest.approx(float(weighted.misfit_of_all) ** 2 / 1e-12)
@@ -200,8 +208,15 @@ def test_places_between_probes(run):
     computed = slipfront.gauges_of(run)
     with pytest.raises(slipfront.CaseError, match="no probe at gauge A"):
         slipfront.compare_traces([dataclasses.replace(computed[0], name="A", x_m=0.0975)], run)
-    with pytest.raises(slipfront.CaseError, match=r"up to within_s = 5e-05 s; widen it, or move"):
-        slipfront.compare_traces([computed[0].prepared(shift_s=1.0)], run)
+    far = computed[0].prepared(shift_s=1.0)
+    with pytest.raises(
+        slipfront.CaseError, match="SG1: .* half of their times at each shift .* 5e-05 s; widen"
+    ):
+        slipfront.compare_traces([far], run, within_s=5e-5)
+    # A shift of any size is found; of several records it must be one.
+    assert float(slipfront.compare_traces([far], run).shift_s) == pytest.approx(-1.0, abs=1e-9)
+    with pytest.raises(slipfront.CaseError, match="SG1, SG2: .* any one shift of their clocks; move clocks"):
+        slipfront.compare_traces([far, computed[1]], run)
     late = computed[0].prepared(shift_s=-4e-6)
     (note,) = slipfront.compare_traces([late], run, within_s=2e-6).notes
     assert note.startswith("shift at the end of its range, within_s = 2e-06 s: ") and "widen it" in note
@@ -212,7 +227,7 @@ def test_places_between_probes(run):
 
 def test_speeds_of_the_run_itself(sequence):
     event = max(sequence.runs, key=lambda of: of.fronts.sizes.get("point", 0))
-    ratio, speed = points_of(event, "static_ratio")
+    ratio, speed = points_of(event, "static_ratio", "v_m_per_s")
     at = np.array([np.median(ratio), ratio.max() + 0.5])
     median = np.median(speed[np.abs(ratio - at[0]) <= 0.02])
     found = slipfront.compare_speeds([event], {"static_ratio": at, "v_m_per_s": [1.25 * median, 1.0]})
@@ -228,7 +243,7 @@ def test_speeds_over_the_ratio_of_the_forces(sequence):
         [sequence], {"friction_before": sequence.events.friction_before.values, "v_m_per_s": np.ones(6)},
         ratio_within=5e-3,
     )  # fmt: skip
-    runs = [points_of(run, "friction_before") for run in sequence.runs]
+    runs = [points_of(run, "friction_before", "v_m_per_s") for run in sequence.runs]
     known = [of for of in runs if of.size]
     assert known and all(np.abs(of[0] - sequence.events.friction_before.values).min() < 5e-3 for of in known)
     assert int(found.n) >= len(known)
@@ -239,7 +254,7 @@ def test_speeds_over_the_ratio_of_the_forces(sequence):
     [
         ({"static_ratio": [1.0]}, "the record has none of v_m_per_s, v_over_c_L; give one of them"),
         ({"static_ratio": [1.0], "friction_before": [1.0], "v_m_per_s": [1.0]}, "has static_ratio and fric"),
-        ({"static_ratio": [1.0], "v_m_per_s": [0.0]}, "v_m_per_s of the record must be above 0"),
+        ({"static_ratio": [1.0], "v_m_per_s": [0.0]}, "v_m_per_s of the record must be above 0 and finite"),
         ({"static_ratio": [1.0, 2.0], "v_m_per_s": [1.0]}, "must be of one length"),
     ],
 )
@@ -301,12 +316,12 @@ def test_forces_and_stresses_are_those_of_the_sequence(sequence):
 def test_events_of_a_force():
     time_s = np.arange(0, 100, 0.02)
     force_N = 1000 + 100 * np.mod(time_s, 10) + np.random.default_rng(1).normal(0, 2, len(time_s))
-    found = slipfront.events_of_force(time_s, force_N, within_s=0.4)
+    found = slipfront.events_of_force(time_s, force_N, drop_within_s=0.4)
     assert found["begin_s"] == pytest.approx(np.arange(10, 100, 10), abs=0.03)
     assert found["force_before_N"] == pytest.approx(np.full(9, 2000), abs=15)
     assert found["force_after_N"] == pytest.approx(np.full(9, 1000), abs=15)
-    with pytest.raises(slipfront.Error, match="the force never drops by 0.1 of its range within 0.4 s"):
-        slipfront.events_of_force(time_s, 1000 + time_s, within_s=0.4)
+    with pytest.raises(slipfront.Error, match="never drops by 0.1 of its range within drop_within_s = 0.4 s"):
+        slipfront.events_of_force(time_s, 1000 + time_s, drop_within_s=0.4)
 
 
 # The command
@@ -362,9 +377,8 @@ def test_a_run_beside_records_of_every_kind(run, files, tmp_path, capsys):
     picture = tmp_path / "page.png"
     called(capsys, run.folder, files["onsets"], "-o", picture)
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert "a picture is of one record, not of 3" in refused(
-        capsys, run.folder, *files.values(), "-o", picture
-    )
+    several = refused(capsys, run.folder, *files.values(), "-o", picture, "--table", tmp_path / "two.csv")
+    assert "a picture is of one record, not of 3" in several and not (tmp_path / "two.csv").exists()
     late = ("--shift-s=-4e-6", "--within-s", "2e-6")
     assert any("end of its range, --within-s = 2e-06 s: " in line
                for line in called(capsys, run.folder, files["gauges"], *late))  # fmt: skip
@@ -409,7 +423,7 @@ def test_the_best_point_of_a_sweep(run, files, tmp_path, capsys, monkeypatch):
     folder, page, table = tmp_path / "sweep", tmp_path / "page.html", tmp_path / "misfits.csv"
     run_sweep(case, {"friction.d_c_m": [3e-6, 4e-6, 5e-6]}, folder, quiet=True)
     lines = called(capsys, folder, files["onsets"], files["speeds"], "-o", page, "--table", table)
-    assert "onsets.csv: least misfit: friction.d_c_m = 4e-06" in lines
+    assert "onsets.csv: nearest: friction.d_c_m = 4e-06" in lines
     assert any(line.startswith("speeds.csv: all points: median deviation") for line in lines)
     rows = rows_of(table)
     assert [row["friction.d_c_m"] for row in rows[:3]] == ["3e-06", "4e-06", "5e-06"]
@@ -475,3 +489,147 @@ def test_records_that_are_refused(run, tmp_path, capsys, text, why):
     told = refused(capsys, run.folder, file)
     assert why in told and "record.csv" in told
     assert "no such folder" in refused(capsys, tmp_path / "none", file)
+
+
+def test_outputs_replace_nothing_but_their_own(run, files, tmp_path, capsys):
+    record = tmp_path / "record.svg"
+    record.write_text(files["onsets"].read_text())
+    given = (run.folder, record)
+    assert "is there and no picture: not replaced" in refused(capsys, *given, "-o", record)
+    assert record.read_text() == files["onsets"].read_text()
+    both = tmp_path / "x.html"
+    assert "is named for the page and the table" in refused(capsys, *given, "-o", both, "--table", both)
+    report = tmp_path / "report.html"
+    report.write_text("<!DOCTYPE html><!-- slipfront report -->")
+    assert "not replaced" in refused(capsys, *given, "-o", report)
+    assert "ends with none of .html" in refused(capsys, *given, "-o", tmp_path / "page.jpg")
+    assert "is given twice" in refused(capsys, *given, record)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b/record.svg").write_text(record.read_text())
+    lines = called(capsys, *given, tmp_path / "b/record.svg")
+    assert [line.split(":")[0] for line in lines] == [str(record), str(tmp_path / "b/record.svg")]
+    assert "holds no results of a run, a sequence or a sweep" in refused(capsys, tmp_path, record)
+
+
+def test_constant_and_double_traces(run):
+    """One that does not change says nothing, and takes nothing from the others."""
+    gauges = slipfront.gauges_of(run)
+    late = [g.prepared(shift_s=-7e-6) for g in gauges]
+    dead = dataclasses.replace(late[0], values=late[0].values | {"xx": np.zeros(len(late[0].time_s))})
+    found = slipfront.compare_traces([dead, *late[1:]], run)
+    assert float(found.shift_s) == pytest.approx(7e-6, abs=1e-9) and float(found.misfit_of_all) < 1e-2
+    assert "SG1: xx does not change: left out" in found.notes
+    with pytest.raises(slipfront.CaseError, match="several traces are called SG1"):
+        slipfront.compare_traces([gauges[0], gauges[0]], run)
+    slip = run.history.slip_m.isel(x_m=40).to_numpy()
+    channel = slipfront.Channel("SG1", "slip", "SG1", run.history.time_s.to_numpy(), slip, x_m=run.x_m[40])
+    assert list(slipfront.compare_traces([gauges[0], channel], run).trace.values) == ["SG1", "SG1, slip"]
+
+
+def test_what_a_run_covers_is_told(run):
+    (gauge, *_) = slipfront.gauges_of(run)
+    longer = np.append(gauge.time_s, gauge.time_s[-1] + np.diff(gauge.time_s).mean() * np.arange(1, 400))
+    values = {part: np.pad(v, (0, 399), "edge") for part, v in gauge.values.items()}
+    found = slipfront.compare_traces([dataclasses.replace(gauge, time_s=longer, values=values)], run)
+    assert float(found.covered[0]) == pytest.approx(len(gauge.time_s) / len(longer), abs=0.01)
+    assert f"the run covers {100 * float(found.covered[0]):.0f} % of a record: SG1" in found.notes
+
+
+def test_slip_is_prepared_as_gauges_are(run, tmp_path, capsys):
+    file, gauge = tmp_path / "records.nc", slipfront.gauges_of(run)[0]
+    time_s, slip = run.history.time_s.to_numpy(), run.history.slip_m.isel(x_m=40).to_numpy()
+    channels = {
+        "SG1": slipfront.Channel(
+            "SG1", "strain_xy", "SG1", gauge.time_s, gauge.values["xy"], gauge.x_m, gauge.y_m
+        ),
+        "eddy": slipfront.Channel("eddy", "slip", "eddy", time_s, slip, x_m=float(run.x_m[40])),
+    }
+    with h5py.File(file, "w") as hdf5:
+        writer = Writer(hdf5, {})
+        for channel in channels.values():
+            writer.put(1, 0.0, channel)
+        writer.end(slipfront.Event(1, 0.0, channels))
+    line = called(capsys, run.folder, file, "--shift-s=5e-6")[0]
+    assert line.endswith(" %, the run's clock less the record's -5.00 us")
+    assert float(line.partition("misfit ")[2].split()[0]) < 1e-3
+    assert "slip 0 %" not in called(capsys, run.folder, file, "--shift-s=eddy=5e-6", "--within-s", "0")[-1]
+    assert "--low-pass-hz is -3.0; it must be above 0" in refused(
+        capsys, run.folder, file, "--low-pass-hz=-3"
+    )
+
+
+def test_a_run_that_did_not_come_to_its_end_is_told(files, tmp_path, capsys):
+    case = {name: of for name, of in BLOCKS.items() if name != "probes"}
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        slipfront.run(case, output=tmp_path / "cut", progress=stop)
+    lines = called(capsys, tmp_path / "cut", files["onsets"])
+    assert "cut: interrupted: compared as far as it goes" in lines[-1]
+
+
+def test_speeds_are_over_the_wave_speed_of_each_run(run, tmp_path):
+    stiff = {name: dict(of) for name, of in BLOCKS.items() if name != "probes"}
+    for body in ("material", "base"):
+        stiff[body] |= {"youngs_modulus_Pa": 4 * PMMA["youngs_modulus_Pa"]}
+    other = slipfront.run(stiff, output=tmp_path / "stiff")
+    record = {"static_ratio": [0.36], "v_over_c_L": [0.4]}
+    one, two = (slipfront.compare_speeds(runs, record) for runs in ([run, other], [other, run]))
+    assert float(one.v_runs[0]) == pytest.approx(float(two.v_runs[0]))
+
+
+@pytest.mark.parametrize(
+    "change, why",
+    [
+        ({"slip_m": [0.0] * 6}, "slip of the record is not above 0 in the mean"),
+        ({"slip_m": [np.nan] * 6}, "slip_m of the record holds no number"),
+        ({"slip_m": [np.inf] * 6}, "slip_m of the record holds inf"),
+        ({"begin_s": [1, 2, 2, 3, 4, 5]}, "begin_s of the record must ascend"),
+    ],
+)
+def test_events_that_are_refused(sequence, change, why):
+    with pytest.raises(slipfront.CaseError, match=why):
+        slipfront.compare_cycles(sequence, cycles_as_recorded(sequence) | change, skip_events=0)
+
+
+def test_events_in_another_unit_are_doubted(sequence):
+    record = cycles_as_recorded(sequence)
+    (note,) = slipfront.compare_cycles(
+        sequence, record | {"slip_m": 1e3 * record["slip_m"]}, skip_events=0
+    ).notes
+    assert note.startswith("slip: beyond 10 times each other; check units")
+    (note,) = slipfront.compare_cycles(sequence, {"begin_s": record["begin_s"]}, skip_events=0).notes
+    assert note.endswith("intervals alone")
+
+
+@pytest.mark.parametrize(
+    "work, why",
+    [
+        (lambda run: slipfront.compare_onsets(run, None), "record has no 'x_m'"),
+        (
+            lambda run: slipfront.compare_onsets(run, {"x_m": [0.0], "onset_s": [0.0], "error_s": [np.inf]}),
+            "error_s",
+        ),
+        (
+            lambda run: slipfront.compare_onsets(run, {"x_m": [0.0], "onset_s": [0.0], "error_s": [0.0]}),
+            "above 0",
+        ),
+        (
+            lambda run: slipfront.compare_onsets(run, {"x_m": [0, 1], "onset_s": [0, 1], "event": [1, 2]}),
+            "several",
+        ),
+        (lambda run: slipfront.compare_speeds([run], None), "it must be a dictionary or data set of arrays"),
+        (lambda run: slipfront.compare_speeds([None], {}), r"runs\[0\] is None"),
+        (lambda run: slipfront.compare_cycles(run, {}), "sequence is "),
+    ],
+)
+def test_arguments_that_are_refused(run, work, why):
+    with pytest.raises(slipfront.CaseError, match=why):
+        work(run)
+
+
+def test_a_constant_clock_has_no_ratio(run):
+    found = slipfront.compare_onsets(run, {"x_m": PLACES_M, "onset_s": np.full(len(PLACES_M), 12.3)})
+    assert np.isnan(found.time_ratio)

@@ -14,28 +14,31 @@ import pandas as pd
 import xarray as xr
 
 from slipfront import command
-from slipfront.compare.cycles import SKIPPED
+from slipfront.compare.cycles import SHARE, SKIPPED
 from slipfront.compare.kinds import KINDS, Kind, Opened, Record, kind_of
 from slipfront.compare.misfit import Estimate, estimate_of
+from slipfront.compare.page import MARK as PAGE_MARK
 from slipfront.compare.page import Part, page_of
 from slipfront.compare.speeds import WITHIN
 from slipfront.errors import Error
-from slipfront.figures.drawing import ENDINGS, guarded, write_results
+from slipfront.figures.drawing import ENDINGS, checked, guarded, write_results
 from slipfront.figures.style import RC
-from slipfront.files import DataError, is_folder
+from slipfront.files import DataError, exists, is_folder
+from slipfront.folder import RUN, SEQUENCE, UNFINISHED
 from slipfront.fronts_command import mark
 from slipfront.gauges_command import add_preparation
 from slipfront.opened_sequence import opened
 from slipfront.report.page import require_replaceable, write_page
 from slipfront.sweep import folder as sweep
 from slipfront.sweep.points import short_names, text_of
-from slipfront.sweep.tables import is_sweep
 
+PAGES = (".html", ".htm")
+ABOUT_ALL = 0.95  # of the most that a run shares with a record
 MARK = "# misfits by slipfront compare\n"  # by it a file is known that may be replaced
 #: Names in messages and their options.
 OPTIONS = (
     "within_s", "ratio_within", "thickness_m", "skip_events", "low_pass_Hz", "zero_s", "window_s", "shift_s",
-    "never_slipped", "drop_within_s",
+    "never_slipped", "drop_within_s", "drop_share",
 )  # fmt: skip
 
 
@@ -47,6 +50,13 @@ class Target:
     values: dict[str, str] = field(default_factory=dict)  # of a sweep's keys
     runs: list[Opened] = field(default_factory=list)
     why_not: str = ""
+    is_single: bool = True  # not several together
+
+    @property
+    def notes(self) -> list[str]:
+        """That a run did not come to its end."""
+        told = {run.status.replace("_", " ") for run in self.runs if run.status != "complete"}
+        return [f"{self.name}: {', '.join(sorted(told))}: compared as far as it goes"] if told else []
 
 
 @dataclass
@@ -64,16 +74,42 @@ class Compared:
 
     @property
     def n_shared(self) -> list[int]:
-        """Places or points that target and record both have, where that differs: fewer are easier to fit."""
+        """Places, points or times that target and record both have, where that differs."""
         return [0 if isinstance(f, str) else int(f["n"]) if "n" in f else 1 for f in self.found]
 
     @property
+    def eligible(self) -> list[int]:
+        """Runs that share most with the record, as what shares less is easier to fit; no pool of them."""
+        shared = [n if of.is_single else -1 for n, of in zip(self.n_shared, self.targets, strict=True)]
+        known = [k for k in range(len(shared)) if shared[k] >= 0 and np.isfinite(self.misfit(k).value)]
+        return [k for k in known if shared[k] >= ABOUT_ALL * max(shared)]
+
+    @property
     def best(self) -> int | None:
-        """The least misfit of the targets that share most with the record."""
-        shared = self.n_shared
-        known = [k for k in range(len(shared))
-                 if shared[k] == max(shared) and np.isfinite(self.misfit(k).value)]  # fmt: skip
-        return min(known, key=lambda k: self.misfit(k).value, default=None)
+        """The least misfit."""
+        return min(self.eligible, key=lambda k: self.misfit(k).value, default=None)
+
+    def best_in_words(self, k: int) -> str:
+        """Which point is nearest, of how many, and whether a wider sweep may have a nearer one."""
+        best, points = self.targets[k], [of for of in self.targets if of.is_single]
+        told = ", ".join(f"{key} = {value}" for key, value in best.values.items())
+        if len(self.eligible) < len(points):
+            told += f", of the {len(self.eligible)} points that share most with the record"
+        at_end = []
+        for key, value in best.values.items():
+            every = sorted({number for of in points if (number := number_of(of.values[key])) is not None})
+            if len(every) > 2 and number_of(value) in (every[0], every[-1]):
+                at_end.append(key)
+        return f"nearest: {told}" + (
+            f"; at the end of {', '.join(at_end)}: widen the sweep" if at_end else ""
+        )
+
+
+def number_of(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -92,12 +128,14 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     add("--table", metavar="FILE", type=Path, help="CSV table of the misfits, a row per record and run")
     add("--event", metavar="N", type=int, help="of records with several events: this one alone")
     add("--never-slipped", metavar="TIME", type=mark, help="as of slipfront fronts")
-    add("--within-s", metavar="S", type=float, default=50e-6, help="of traces: largest shift of clocks that "
-        "is tried, by default 50e-6")  # fmt: skip
+    add("--within-s", metavar="S", type=float, default=np.inf, help="of traces: largest shift of clocks that "
+        "is tried, by default all that leave half of the shorter of record and run")  # fmt: skip
     add("--ratio-within", metavar="R", type=float, default=WITHIN, help="of speeds: nodes count whose stress "
         f"ratio is off by no more, by default {WITHIN}")  # fmt: skip
     add("--thickness-m", metavar="B", type=float, help="of a force in N: thickness of the bodies")
     add("--drop-within-s", metavar="S", type=float, help="of a record of the force: time in which it drops")
+    add("--drop-share", metavar="X", type=float, default=SHARE, help="of its range by which it drops, by "
+        f"default {SHARE}")  # fmt: skip
     add("--skip-events", metavar="N", type=int, default=SKIPPED, help="of cycles: first events left out on "
         f"both sides, by default {SKIPPED}")  # fmt: skip
     add_preparation(parser)
@@ -108,7 +146,7 @@ def require_of_use(options: argparse.Namespace, kinds: set[Kind]) -> None:
     """Refuses options that count with no record that is given."""
     plain = vars(parse([str(options.dir), *map(str, options.records)]))
     of_use = {name for kind in kinds for name in kind.options}
-    for name in {name for kind in KINDS for name in kind.options} - of_use:
+    for name in sorted({name for kind in KINDS for name in kind.options} - of_use):
         if getattr(options, name) != plain[name]:
             of = ", ".join(kind.name.lower() for kind in KINDS if name in kind.options)
             raise DataError(
@@ -119,7 +157,11 @@ def require_of_use(options: argparse.Namespace, kinds: set[Kind]) -> None:
 def targets_in(folder: Path) -> list[Target]:
     if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; DIR is an output folder of slipfront")
-    if not is_sweep(folder):
+    if not exists(folder / sweep.DEFINITION):
+        if not any(exists(folder / name) for name in (RUN, SEQUENCE, UNFINISHED)):
+            raise DataError(
+                f"{folder}: holds no results of a run, a sequence or a sweep; DIR is their folder"
+            )
         return [Target(folder.absolute().name, runs=[opened(folder)])]
     made = []
     for point in sweep.read_definition(folder).points():
@@ -138,7 +180,8 @@ def compared(kind: Kind, record: Record, targets: list[Target], options: argpars
     """Of a single run an error is the command's; of a sweep it is told of its point."""
     found: list[xr.Dataset | str] = []
     if kind.pools and len(targets) > 1:
-        targets = [*targets, Target("all points", runs=[run for target in targets for run in target.runs])]
+        runs = [run for target in targets for run in target.runs]
+        targets = [*targets, Target("all points", runs=runs, is_single=False)]
     for target in targets:
         if not target.runs:
             found.append(target.why_not)
@@ -174,17 +217,17 @@ def lines_of(of: Compared) -> list[str]:
     if len(of.targets) == 1:
         (found,) = of.found
         assert not isinstance(found, str)
-        return [head + line for line in (*of.kind.lines(found), *of.record.notes, *found.attrs["notes"])]
+        notes = [*of.record.notes, *found.attrs["notes"], *of.targets[0].notes]
+        return [head + line for line in (*of.kind.lines(found), *map(in_words, notes))]
     short = short_names(list(of.targets[0].values))
     lines = []
     for target, found in zip(of.targets, of.found, strict=True):
         name = ", ".join(f"{short[key]} = {value}" for key, value in target.values.items()) or target.name
-        lines.append(f"{head}{name}: {found if isinstance(found, str) else of.kind.lines(found)[0]}")
+        told = [found] if isinstance(found, str) else [of.kind.lines(found)[0], *found.attrs["notes"]]
+        lines.append(f"{head}{name}: {'; '.join([*told, *(target.notes if target.is_single else [])])}")
     if of.best is not None:
-        best = of.targets[of.best]
-        words = ", ".join(f"{key} = {value}" for key, value in best.values.items())
-        lines.append(f"{head}least misfit: {words or best.name}")
-    return lines + [head + note for note in of.record.notes]
+        lines.append(head + of.best_in_words(of.best))
+    return lines + [head + in_words(note) for note in of.record.notes]
 
 
 def part_of(of: Compared, options: argparse.Namespace) -> Part:
@@ -197,46 +240,72 @@ def part_of(of: Compared, options: argparse.Namespace) -> Part:
         heading=f"{of.kind.name}: {of.record.label}",
         run=target.name if len(of.targets) > 1 else "",
         lines=of.kind.lines(found),
-        notes=[*of.record.notes, *found.attrs["notes"]],
+        notes=[*map(in_words, [*of.record.notes, *found.attrs["notes"]]), *target.notes],
         found=found,
         drawing=of.kind.draw(target.runs, of.record.content, found, options),
     )
 
 
-def work(options: argparse.Namespace) -> list[str]:
-    is_picture = options.output is not None and options.output.suffix.lower() in ENDINGS
-    if options.output is not None and not is_picture:
-        require_replaceable(options.output)
-    if options.table is not None:
-        command.require_own(options.table, MARK.encode(), "a table of slipfront compare")
-    targets = targets_in(options.dir)
+def read_all(options: argparse.Namespace) -> tuple[list[tuple[Kind, Record]], list[str]]:
+    """Records with their kinds, and warnings of their files."""
+    files = [file.resolve() for file in options.records]
+    if twice := next((file for file in files if files.count(file) > 1), None):
+        raise DataError(f"{twice}: is given twice; leave it out once")
+    names, read = [file.name for file in files], []
     with warnings.catch_warnings(record=True) as passed_over:
         warnings.simplefilter("always")
-        read = [
-            (kind, record)
-            for file in options.records
-            for kind in [kind_of(file)]
-            for record in kind.read(file, options)
-        ]
+        for file in options.records:
+            kind = kind_of(file)
+            for record in kind.read(file, options):
+                if names.count(file.name) > 1:
+                    record = record._replace(label=record.label.replace(file.name, str(file), 1))
+                read.append((kind, record))
+    return read, [str(told.message) for told in passed_over]
+
+
+def is_picture(options: argparse.Namespace) -> bool:
+    return options.output is not None and options.output.suffix.lower() in ENDINGS
+
+
+def require_writable(options: argparse.Namespace, n_records: int) -> None:
+    """Refuses outputs before anything is compared."""
+    output, table_file = options.output, options.table
+    if output is not None and table_file is not None and output.resolve() == table_file.resolve():
+        raise DataError(f"{output}: is named for the page and the table; give two names")
+    if is_picture(options):
+        checked(output)
+        if n_records > 1:
+            raise DataError(f"{output}: a picture is of one record, not of {n_records}; write .html")
+    elif output is not None:
+        if output.suffix.lower() not in PAGES:
+            raise DataError(f"{output}: ends with none of {', '.join((*PAGES, *ENDINGS))}")
+        require_replaceable(output, PAGE_MARK, "a page of slipfront compare")
+    if table_file is not None:
+        command.require_own(table_file, MARK.encode(), "a table of slipfront compare")
+
+
+def work(options: argparse.Namespace) -> list[str]:
+    targets = targets_in(options.dir)
+    read, lines = read_all(options)
     require_of_use(options, {kind for kind, _ in read})
+    require_writable(options, len(read))
     every = [compared(kind, record, targets, options) for kind, record in read]
-    lines = [str(told.message) for told in passed_over]
     for of in every:
         lines += lines_of(of)
     table = pd.DataFrame([row for of in every for row in rows_of(of)])
+    if is_picture(options):
+        lines += write_results(options.output, options.dir, lambda _: part_of(every[0], options).drawing)
+    elif options.output is not None:
+        of_sweep = table if len(targets) > 1 else None
+        with matplotlib.rc_context(RC):
+            page = guarded(
+                options.dir, lambda: page_of(options.dir, [part_of(of, options) for of in every], of_sweep)
+            )
+        lines += write_page(page, options.output)
     if options.table is not None:
         text = table.to_csv(index=False, lineterminator="\n")
         command.write_own(options.table, MARK, text, "a table of slipfront compare")
-    if is_picture:
-        if len(every) > 1:
-            raise DataError(f"{options.output}: a picture is of one record, not of {len(every)}; write .html")
-        lines += write_results(options.output, options.dir, lambda _: part_of(every[0], options).drawing)
-    elif options.output is not None:
-        with matplotlib.rc_context(RC):
-            parts = guarded(options.dir, lambda: [part_of(of, options) for of in every])
-            page = page_of(options.dir, parts, table if len(targets) > 1 else None)
-        lines += write_page(page, options.output)
-    return [in_words(line) for line in lines]
+    return lines
 
 
 def in_words(text: str) -> str:

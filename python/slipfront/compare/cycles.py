@@ -13,10 +13,13 @@ from numpy.typing import ArrayLike
 from slipfront.compare.misfit import Estimate, of_all, rms
 from slipfront.cutting import drops
 from slipfront.errors import CaseError
-from slipfront.given import column, instance, number, whole
+from slipfront.files import DataError
+from slipfront.given import column, holds, instance, number, whole
 from slipfront.opened_sequence import OpenSequence
 
 SHARE = 0.1  # of the largest drop, from which an event counts
+STEMS = ("before", "after", "drop")
+FAR = 10.0  # times, beyond which a mean may be in another unit
 SKIPPED = 2  # first events, which depend on how the sample was put together
 #: How a record has the shear force, by the beginning of its columns, and the unit.
 FORMS = {"friction": "", "stress": "Pa", "force": "N"}
@@ -56,24 +59,29 @@ def statistics(values: np.ndarray) -> Statistics:
 
 
 def events_of_force(
-    time_s: ArrayLike, force_N: ArrayLike, *, within_s: float, share: float = SHARE
+    time_s: ArrayLike, force_N: ArrayLike, *, drop_within_s: float, drop_share: float = SHARE
 ) -> dict[str, np.ndarray]:
     """Events of a record of the shear force in N: begin_s where it drops by a share of its range or more
     within a time, force_before_N and force_after_N the highest and lowest value within that time on both
-    sides, as means over a quarter of it. [events] Raises Error where it never drops, or drops are within the
-    noise."""
-    time, values = (
-        column({"time_s": time_s}, "record", "time_s"),
-        column({"force_N": force_N}, "record", "force_N"),
-    )
+    sides, as means over a quarter of it, which flatten the corners of a slow record. [events] Raises Error
+    where it never drops, or drops are within the noise."""
+    time = column({"time_s": time_s}, "record", "time_s", finite=True)
+    values = column({"force_N": force_N}, "record", "force_N")
     if len(time) != len(values) or len(time) < 2 or not (np.diff(time) > 0).all():
         raise CaseError("times of the force must ascend, with a value each, two or more")
-    within = number(within_s, "within_s", above=0, finite=True)
+    within = number(drop_within_s, "drop_within_s", above=0, finite=True)
+    share = number(drop_share, "drop_share", above=0, finite=True)
     known = np.isfinite(values)
     time, values = time[known], values[known]
-    begin_s = drops("the record of the force", time, values, number(share, "share", above=0), within)
+    try:
+        begin_s = drops("the force", time, values, share, within)
+    except DataError as error:
+        told = str(error).replace("within_s", "drop_within_s").replace("larger share", "larger drop_share")
+        raise CaseError(told) from None
     if not begin_s.size:
-        raise CaseError(f"the force never drops by {share:g} of its range within {within:g} s")
+        raise CaseError(
+            f"the force never drops by {share:g} of its range within drop_within_s = {within:g} s"
+        )
     width = max(int(round(within / float(np.median(np.diff(time))))) // 4, 1)
     sums = np.cumsum(np.insert(values, 0, 0.0))
     means = (sums[width:] - sums[:-width]) / width
@@ -128,7 +136,7 @@ def events_of_sequence(sequence: OpenSequence, form: str, thickness_m: float | N
 
 def form_of(record: Mapping[str, Any]) -> str:
     """In which form a table of events has the force."""
-    found = {form for stem in ("before", "after", "drop") for form in FORMS if name_of(form, stem) in record}
+    found = {form for form in FORMS if any(holds(record, "record", name_of(form, stem)) for stem in STEMS)}
     if len(found) > 1:
         raise CaseError(f"the record has the shear as {' and as '.join(sorted(found))}; give one of them")
     return found.pop() if found else "friction"
@@ -147,11 +155,16 @@ def both_sides(
             raise CaseError(
                 f"thickness_m is of forces in N; the record has the shear as {form}: leave it out"
             )
-    of_record = {"begin_s": column(record, "record", "begin_s")}
-    shear = {name: name_of(form, name) for name in ("before", "after", "drop")}
+    of_record = {"begin_s": column(record, "record", "begin_s", finite=True)}
+    shear = {name: name_of(form, name) for name in STEMS}
     for name, called in ({"slip_m": "slip_m", "duration_s": "duration_s"} | shear).items():
-        if called in record:
-            of_record[name] = column(record, "record", called)
+        if holds(record, "record", called):
+            values = column(record, "record", called)
+            if np.isinf(values).any() or np.isnan(values).all():
+                raise CaseError(
+                    f"{called} of the record holds {'inf' if np.isinf(values).any() else 'no number'}"
+                )
+            of_record[name] = values
     if len({len(values) for values in of_record.values()}) > 1:
         raise CaseError("columns of the record differ in length")
     if not (np.diff(of_record["begin_s"]) > 0).all():
@@ -191,9 +204,20 @@ def compare_cycles(
             for key, value in (("n", n), ("mean", mean), ("mean_error", error), ("deviation", deviation)):
                 data.setdefault(f"{key}_{side}", []).append(value)
     of = {name: np.array(values) for name, values in data.items()}
+    if wrong := [name for name, mean in zip(names, of["mean_record"], strict=True) if not mean > 0]:
+        raise CaseError(
+            f"{NAMES[wrong[0]]} of the record is not above 0 in the mean: nothing to compare it with"
+        )
     ratio = of["mean_sequence"] / of["mean_record"]
     shares = (of[f"mean_error_{side}"] / of[f"mean_{side}"] for side in sides)
     ratio_error = np.abs(ratio) * np.hypot(*shares)
+    notes = []
+    if far := [NAMES[name] for name, r in zip(names, ratio, strict=True) if not 1 / FAR < r < FAR]:
+        notes.append(
+            f"{', '.join(far)}: beyond {FAR:g} times each other; check units, and thickness_m of forces"
+        )
+    if len(names) == 1:
+        notes.append("the record has neither shear before nor drop, slip or duration: intervals alone")
     units = [QUANTITIES[name] or FORMS[form] or "1" for name in names]
     return xr.Dataset(
         {name: ("quantity", values) for name, values in of.items()}
@@ -203,5 +227,5 @@ def compare_cycles(
         }
         | of_all(rms(ratio - 1, ratio_error), "1"),
         {"quantity": names, "unit": ("quantity", units)},
-        {"notes": []},
+        {"notes": notes},
     )

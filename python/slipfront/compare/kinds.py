@@ -11,17 +11,18 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 import xarray as xr
 
+from slipfront import command
 from slipfront.channels import FORCES
-from slipfront.compare.cycles import NAMES, both_sides, compare_cycles, events_of_force, name_of
+from slipfront.compare.cycles import NAMES, STEMS, both_sides, compare_cycles, events_of_force, name_of
 from slipfront.compare.misfit import Estimate, estimate_of
 from slipfront.compare.onsets import compare_onsets
 from slipfront.compare.speeds import RATIOS, SPEEDS, compare_speeds, points_of, read_points, runs_of
-from slipfront.compare.traces import compare_traces, traces_of
-from slipfront.errors import CaseError
+from slipfront.compare.traces import SlipSensor, compare_traces, sensor_of, traces_of
+from slipfront.errors import CaseError, Error
 from slipfront.figures.comparison import draw_cycles, draw_onsets, draw_speeds, draw_traces
 from slipfront.figures.drawing import Drawing
 from slipfront.files import DataError, one_line, read_table
-from slipfront.gauges import read_gauges
+from slipfront.gauges import Gauge, read_gauges
 from slipfront.gauges_command import prepared
 from slipfront.onsets import (
     LENGTHS,
@@ -48,9 +49,10 @@ OF_CYCLES: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
     **{
         name_of(form, stem): ((f"{form}_{stem}",), units)
         for form, units in (("friction", {"": 1.0}), ("stress", PRESSURES), ("force", FORCES))
-        for stem in ("before", "after", "drop")
+        for stem in STEMS
     },
 }
+OTHERS = ("begin_s", "slip_m", "duration_s")  # than the shear
 WANTED = (
     "x_m and time_s of onsets; gauge, x_m, y_m, time_s and strain_xx or others of gauges; time_s and "
     "force_N; begin_s and friction_before, stress_before_MPa, force_before_kN or others of events; or "
@@ -124,15 +126,16 @@ class Traces:
         return found
 
     def of_event(self, file: Path, event: Event, options: argparse.Namespace) -> Record:
-        gauges, told = prepared(event.gauges(), options)
-        slips = [c for c in event.channels.values() if c.kind == "slip"]
-        if not gauges and not slips:
+        given: list[Gauge | SlipSensor] = list(event.gauges())
+        given += [sensor_of(c) for c in event.channels.values() if c.kind == "slip"]
+        if not given:
             raise DataError(f"{file}: event {event.number} has no channel of strain, stress or slip")
+        traces, told = prepared(given, options)
         others = {c.kind for c in event.channels.values()} - {"slip"}
         left_out = sorted(k for k in others if not k.startswith(("strain", "stress", "gamma")))
         if left_out:
             told.append(f"channels of {', '.join(left_out)} are not compared")
-        return Record(f"{file.name}, event {event.number}", [*gauges, *slips], tuple(told))
+        return Record(f"{file.name}, event {event.number}", traces, tuple(told))
 
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset:
         return compare_traces(record, one_run(runs), within_s=options.within_s)
@@ -140,7 +143,7 @@ class Traces:
     def lines(self, found: xr.Dataset) -> list[str]:
         told = [
             f"misfit {in_percent(estimate_of(found))}, the run's clock less the record's "
-            f"{1e6 * float(found.shift_s):.2f} us"
+            f"{1e6 * float(found.shift_s) + 0.0:.2f} us"
         ]
         for name in found.trace.values:
             at = found.sel(trace=name)
@@ -155,7 +158,7 @@ class Traces:
     def draw(
         self, runs: list[Opened], record: Any, found: xr.Dataset, options: argparse.Namespace
     ) -> Drawing:
-        return draw_traces(traces_of(record, one_run(runs)), found)
+        return draw_traces(traces_of(record, one_run(runs))[0], found)
 
 
 class Speeds:
@@ -185,20 +188,21 @@ class Speeds:
     def draw(
         self, runs: list[Opened], record: Any, found: xr.Dataset, options: argparse.Namespace
     ) -> Drawing:
-        points = np.concatenate([points_of(run, found.attrs["ratio"]) for run in runs_of(runs)], axis=1)
-        if found.attrs["speed"] == "v_over_c_L":
-            points[1] /= runs_of(runs)[0].c_L_m_per_s
+        of = found.attrs["ratio"], found.attrs["speed"]
+        points = np.concatenate([points_of(run, *of) for run in runs_of(runs)], axis=1)
         return draw_speeds(points, found)
 
 
 class Cycles:
     name = "Stick-slip"
     pools = False
-    options: tuple[str, ...] = ("thickness_m", "drop_within_s", "skip_events")
+    options: tuple[str, ...] = ("thickness_m", "drop_within_s", "drop_share", "skip_events")
 
     def holds(self, names: Sequence[str]) -> bool:
-        of_cycles = {called for q in OF_CYCLES for called in OF_CYCLES[q][0]} - {"time", "t"}
-        return any(name in OF_FORCE["force"][0] or name in of_cycles for name in names) and "x" not in names
+        shear = (
+            called for q, (all_called, _) in OF_CYCLES.items() if q not in OTHERS for called in all_called
+        )
+        return not {*OF_FORCE["force"][0], *shear, "begin"}.isdisjoint(names) and "x" not in names
 
     def read(self, file: Path, options: argparse.Namespace) -> list[Record]:
         table = read_table(file, by_hand=True, separators=SEPARATORS)
@@ -212,7 +216,11 @@ class Cycles:
             raise DataError(
                 f"{file}: a record of the force: give --drop-within-s, the time in which it drops"
             )
-        events = events_of_force(found["time_s"], found["force"], within_s=options.drop_within_s)
+        given = {"drop_within_s": options.drop_within_s, "drop_share": options.drop_share}
+        try:
+            events = events_of_force(found["time_s"], found["force"], **given)
+        except Error as error:
+            raise DataError(f"{file}: {command.in_options(str(error), tuple(given))}") from None
         return [Record(file.name, events)]
 
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset:

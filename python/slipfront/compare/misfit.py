@@ -40,7 +40,7 @@ def median_of(values: np.ndarray) -> Estimate:
         return Estimate(np.nan, np.nan)
     value = float(np.median(known))
     sigma = SIGMA_OF_MAD * float(np.median(np.abs(known - value)))
-    error = SE_OF_MEDIAN * sigma / np.sqrt(known.size) if known.size > 2 else np.nan
+    error = SE_OF_MEDIAN * sigma / np.sqrt(known.size) if known.size > 2 and sigma > 0 else np.nan
     return Estimate(value, float(error))
 
 

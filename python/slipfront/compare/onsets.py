@@ -8,10 +8,13 @@ import xarray as xr
 
 from slipfront.compare.misfit import Estimate, of_all
 from slipfront.errors import CaseError
-from slipfront.given import column, instance
+from slipfront.given import column, holds, instance
 from slipfront.measures import Arrays
 from slipfront.opened import OpenRun
+from slipfront.tip_fit import correlated
 from slipfront.units import attributes
+
+ROUNDING = 1e-9  # of times
 
 
 def onsets_at(run: OpenRun, x_m: np.ndarray) -> np.ndarray:
@@ -43,9 +46,14 @@ def compare_onsets(run: OpenRun, record: Arrays) -> xr.Dataset:
     explain the residuals. `notes` names places that only one of both has."""
     instance(run, OpenRun, "run")
     x_m, record_s = column(record, "record", "x_m"), column(record, "record", "onset_s")
-    error_s = column(record, "record", "error_s") if "error_s" in record else np.ones(len(x_m))
+    has_errors = holds(record, "record", "error_s")
+    error_s = column(record, "record", "error_s", finite=True) if has_errors else np.ones(len(x_m))
     if not len(x_m) == len(record_s) == len(error_s):
         raise CaseError("x_m, onset_s and error_s of the record must be of one length")
+    if not (error_s > 0).all():
+        raise CaseError("error_s of the record must be above 0")
+    if "event" in record and len(np.unique(column(record, "record", "event"))) > 1:
+        raise CaseError("the record has several events; take one, as by read_onsets(file, event=...)")
     run_s = onsets_at(run, x_m)
     both = np.isfinite(record_s) & np.isfinite(run_s)
     notes = [
@@ -56,27 +64,34 @@ def compare_onsets(run: OpenRun, record: Arrays) -> xr.Dataset:
         )
         if of.any()
     ]
-    n, weight = int(both.sum()), 1 / error_s[both] ** 2
+    n, order = int(both.sum()), np.argsort(x_m[both], kind="stable")
+    weight = (error_s.min() / error_s[both]) ** 2
     residual_s = np.full(len(x_m), np.nan)
     shift, misfit, slope, chi2 = (Estimate(np.nan, np.nan) for _ in range(4))
     if n > 0:
         shift_s = float(np.average(run_s[both] - record_s[both], weights=weight))
         residual_s = run_s - shift_s - record_s
     if n > 1:
-        square = float(np.average(residual_s[both] ** 2, weights=weight)) * n / (n - 1)
-        misfit = Estimate(np.sqrt(square), np.sqrt(square / (2 * (n - 1))))
-        shift = Estimate(shift_s, misfit.value * float(np.sqrt((weight**2).sum())) / float(weight.sum()))
-        if "error_s" in record:
-            chi2 = Estimate(float((weight * residual_s[both] ** 2).sum() / (n - 1)), np.nan)
-    if n > 2:
-        centred = record_s[both] - np.average(record_s[both], weights=weight)
+        left = residual_s[both]
+        square = float(np.average(left**2, weights=weight)) * n / (n - 1)
+        # Residuals of neighbours that are alike count as fewer.
+        alike = correlated((np.sqrt(weight) * left)[order][None]) if square > 0 else 1.0
+        misfit = Estimate(np.sqrt(square), np.sqrt(square * alike / (2 * (n - 1))))
+        shift = Estimate(
+            shift_s, float(np.sqrt((weight**2 * left**2).sum() * alike * n / (n - 1)) / weight.sum())
+        )
+        if has_errors:
+            chi2 = Estimate(float(((left / error_s[both]) ** 2).sum() / (n - 1)), np.nan)
+    centred = record_s[both] - np.average(record_s[both], weights=weight) if n > 2 else np.zeros(1)
+    if np.ptp(centred) > ROUNDING * np.abs(record_s[both]).max(initial=0.0):
         norm = float((weight * centred**2).sum())
-        if norm > 0:
-            gain = float((weight * centred * residual_s[both]).sum()) / norm
-            left = float((weight * (residual_s[both] - gain * centred) ** 2).sum()) / (n - 2)
-            slope = Estimate(1 + gain, float(np.sqrt(left / norm)))
+        gain = float((weight * centred * left).sum()) / norm
+        rest = left - gain * centred
+        alike = correlated((np.sqrt(weight) * rest)[order][None]) if rest.any() else 1.0
+        scatter = float((weight * rest**2).sum()) / (n - 2)
+        slope = Estimate(1 + gain, float(np.sqrt(scatter * alike / norm)))
     of_places = {"x_m": x_m, "record_s": record_s, "run_s": run_s, "residual_s": residual_s}
-    if "error_s" in record:
+    if has_errors:
         of_places["error_s"] = error_s
     return xr.Dataset(
         {name: ("place", values, attributes(name)) for name, values in of_places.items()}

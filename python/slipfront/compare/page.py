@@ -15,6 +15,7 @@ from slipfront.figures.drawing import Drawing
 from slipfront.report.page import Page, section, warnings_list, words
 from slipfront.report.tables import table
 
+MARK = "<!DOCTYPE html><!-- slipfront compare -->"
 MOST_ROWS = 200
 
 
@@ -43,12 +44,18 @@ def html_of(rows: pd.DataFrame) -> str:
     return table([words(name) for name in shown.columns], cells) + more
 
 
+def known_rows(of: xr.Dataset) -> list[str]:
+    """Variables over all dimensions: where none is known there is no row."""
+    return [str(name) for name in of.data_vars if len(of[name].dims) == len(of.dims)]
+
+
 def part(of: Part, place: str) -> str:
     image = b64encode(of.drawing.rendered("svg")).decode()
     picture = (
         f'<img src="data:image/svg+xml;base64,{image}" alt="{words(of.heading)}" style="max-width:100%">'
     )
-    rows = of.found[[name for name in of.found.data_vars if of.found[name].dims]].to_dataframe().reset_index()
+    variables = of.found[[name for name in of.found.data_vars if of.found[name].dims]]
+    rows = variables.to_dataframe().dropna(how="all", subset=known_rows(variables)).reset_index()
     shown = f"<p>Shown: {words(of.run)}, the least misfit.</p>" if of.run else ""
     told = "".join(f"<p>{words(line)}.</p>" for line in of.lines)
     return section(place, words(of.heading), shown, told, warnings_list(of.notes), picture, html_of(rows))
@@ -59,4 +66,4 @@ def page_of(folder: Path, parts: list[Part], misfits: pd.DataFrame | None) -> Pa
     made = [part(of, f"record{k}") for k, of in enumerate(parts)]
     if misfits is not None:
         made.insert(0, section("misfits", "Misfits", html_of(misfits)))
-    return Page(f"{folder.absolute().name} beside records", made)
+    return Page(f"{folder.absolute().name} beside records", made, mark=MARK)

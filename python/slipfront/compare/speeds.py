@@ -13,7 +13,7 @@ from scipy.integrate import trapezoid
 from slipfront.compare.misfit import median_of, of_all
 from slipfront.errors import CaseError
 from slipfront.files import DataError, read_table
-from slipfront.given import column, in_order, number
+from slipfront.given import column, holds, in_order, instance, number
 from slipfront.measures import Arrays
 from slipfront.opened import OpenRun
 from slipfront.opened_sequence import OpenSequence
@@ -28,28 +28,28 @@ WITHIN = 0.02  # of the ratio
 def runs_of(opened: Iterable[OpenRun | OpenSequence]) -> list[OpenRun]:
     """The runs themselves, of sequences those of their events."""
     found: list[OpenRun] = []
-    for one in in_order(opened, "runs", "a list of runs"):
-        found += one.runs if isinstance(one, OpenSequence) else [one]
+    for k, one in enumerate(in_order(opened, "runs", "a list of runs")):
+        found += one.runs if isinstance(one, OpenSequence) else [instance(one, OpenRun, f"runs[{k}]")]
     return found
 
 
-def points_of(run: OpenRun, ratio: str) -> np.ndarray:
-    """Ratios, and speeds in m/s, of what a run's fronts do outside the trigger zone or the patch: at each
-    node for static_ratio; for friction_before the median of the longest front over the ratio of the
-    forces. [2, points]"""
+def points_of(run: OpenRun, ratio: str, speed: str) -> np.ndarray:
+    """Ratios, and speeds in m/s or over the run's c_L, of what its fronts do outside the trigger zone or the
+    patch: at each node for static_ratio; for friction_before the median of the longest front over the ratio
+    of the forces. [2, points]"""
     slipped = Slipped(run)
-    if ratio == "static_ratio":
-        return np.concatenate([np.empty((2, 0)), *map(slipped.points, slipped.fronts)], axis=1)
-    if slipped.longest is None or not (of_longest := slipped.points(slipped.longest)[1]).size:
-        return np.empty((2, 0))
-    shear, normal = (trapezoid(run.tractions[name].to_numpy(), run.x_m) for name in ("t_s_Pa", "p_s_Pa"))
-    return np.array([[shear / normal], [np.median(of_longest)]])
+    found = np.concatenate([np.empty((2, 0)), *map(slipped.points, slipped.fronts)], axis=1)
+    if ratio == "friction_before" and slipped.longest is not None:
+        speeds = slipped.points(slipped.longest)[1:, :]
+        shear, normal = (trapezoid(run.tractions[name].to_numpy(), run.x_m) for name in ("t_s_Pa", "p_s_Pa"))
+        found = np.array([[shear / normal], [np.median(speeds)]]) if speeds.size else np.empty((2, 0))
+    return found / np.array([[1.0], [run.c_L_m_per_s if speed == "v_over_c_L" else 1.0]])
 
 
 def read_points(file: Path) -> dict[str, np.ndarray]:
     """The measured points of a CSV file, as compare_speeds takes them."""
-    table = read_table(file, by_hand=True, separators=";\t,")
-    record = {name: table.numbers(name) for name in (*RATIOS, *SPEEDS) if name in table.header}
+    columns = read_table(file, by_hand=True, separators=";\t,")
+    record = {name: columns.numbers(name) for name in (*RATIOS, *SPEEDS) if name in columns.header}
     try:
         one_of(record, RATIOS), one_of(record, SPEEDS)
     except CaseError as error:
@@ -58,7 +58,7 @@ def read_points(file: Path) -> dict[str, np.ndarray]:
 
 
 def one_of(record: Arrays, names: tuple[str, str]) -> str:
-    has = [name for name in names if name in record]
+    has = [name for name in names if holds(record, "the record", name)]
     if len(has) != 1:
         raise CaseError(
             f"the record has {' and '.join(has) or 'none'} of {', '.join(names)}; give one of them"
@@ -87,18 +87,21 @@ def compare_speeds(
     within = number(ratio_within, "ratio_within", above=0, finite=True)
     if len(at) != len(v_record) or not len(at):
         raise CaseError(f"{ratio} and {speed} of the record must be of one length, 1 or more")
-    if (v_record <= 0).any():
-        raise CaseError(f"{speed} of the record must be above 0")
-    unit = {"v_m_per_s": ("m s-1", 1.0), "v_over_c_L": ("1", opened[0].c_L_m_per_s)}[speed]
-    of_runs = np.concatenate([points_of(run, ratio) for run in opened], axis=1)
-    v_runs = np.array([median(of_runs[1][np.abs(of_runs[0] - r) <= within]) for r in at]) / unit[1]
+    known = ~(np.isnan(at) | np.isnan(v_record))
+    notes = [] if known.all() else [f"{(~known).sum()} of {len(at)} points lack a number: left out"]
+    at, v_record = at[known], v_record[known]
+    if not known.any() or not ((v_record > 0) & np.isfinite(v_record) & np.isfinite(at)).all():
+        raise CaseError(f"{speed} of the record must be above 0 and finite, and so must be {ratio}")
+    unit = "m s-1" if speed == "v_m_per_s" else "1"
+    of_runs = np.concatenate([points_of(run, ratio, speed) for run in opened], axis=1)
+    v_runs = np.array([median(of_runs[1][np.abs(of_runs[0] - r) <= within]) for r in at])
     deviation = v_runs / v_record - 1
     of_deviation = median_of(deviation)
     return xr.Dataset(
         {
             ratio: ("point", at, {"units": "1"}),
-            "v_record": ("point", v_record, {"units": unit[0]}),
-            "v_runs": ("point", v_runs, {"units": unit[0]}),
+            "v_record": ("point", v_record, {"units": unit}),
+            "v_runs": ("point", v_runs, {"units": unit}),
             "deviation": ("point", deviation, {"units": "1"}),
         }
         | of_all(median_of(np.abs(deviation)), "1")
@@ -107,5 +110,5 @@ def compare_speeds(
             "deviation_of_all_error": ((), of_deviation.error, {"units": "1"}),
             "n": ((), int(np.isfinite(deviation).sum()), {"long_name": "points that both have"}),
         },
-        attrs={"notes": [], "ratio": ratio, "speed": speed},
+        attrs={"notes": notes, "ratio": ratio, "speed": speed},
     )

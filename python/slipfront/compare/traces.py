@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 
 from slipfront.compare.misfit import of_all, rms
 from slipfront.errors import CaseError
-from slipfront.gauges import Gauge, amplifier, filtered, gauges_of, smooth, weights
+from slipfront.gauges import Gauge, amplifier, filtered, gauges_of, smooth, weights, worked_on
 from slipfront.given import in_order, instance, number, shown
 from slipfront.opened import OpenRun
 from slipfront.records import Channel
@@ -20,8 +20,9 @@ from slipfront.tip_fit import correlated
 
 LEAST_SHARED = 0.5  # of the shorter of record and run
 SAME_PLACE_M = 1e-6
-MOST_SHIFTS = 500  # to each side, before the best is refined
-MOST_TIMES = 5000  # of a trace in that search
+MOST_SHIFTS = 4000  # that are tried, before the best is refined
+MOST_TIMES = 1000  # of a trace in that search
+MOST_UNCOVERED = 0.9  # share of a record below which its cover is told
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,12 @@ def computed_at(run: OpenRun, gauge: Gauge, place: tuple[float, float]) -> tuple
     """Times, and xx, yy, xy of a run's probes at a place [3, times]: a probe there, or linear between two of
     its height that are no farther apart than this."""
     x_m, y_m = place
-    probes = [g for g in gauges_of(run, stress=not gauge.is_strain) if abs(g.y_m - y_m) < SAME_PLACE_M]
+    try:
+        every = gauges_of(run, stress=not gauge.is_strain)
+    except CaseError as error:
+        told = str(error)
+        raise CaseError(told if told.startswith(str(run.folder)) else f"{run.folder}: {told}") from None
+    probes = [g for g in every if abs(g.y_m - y_m) < SAME_PLACE_M]
     left = max((g for g in probes if g.x_m <= x_m + SAME_PLACE_M), key=lambda g: g.x_m, default=None)
     right = min((g for g in probes if g.x_m >= x_m - SAME_PLACE_M), key=lambda g: g.x_m, default=None)
     if left is None or right is None or right.x_m - left.x_m > abs(y_m) + SAME_PLACE_M:
@@ -90,102 +96,179 @@ def computed_at(run: OpenRun, gauge: Gauge, place: tuple[float, float]) -> tuple
     return left.time_s, np.array([(1 - share) * a + share * b for a, b in pair])
 
 
-def trace_of_gauge(gauge: Gauge, run: OpenRun) -> Trace:
-    """The probes pass the record's filter and its amplifier, a low-pass of first order."""
+@dataclass(frozen=True)
+class SlipSensor:
+    """A record of slip in m at a place of the interface."""
+
+    name: str
+    x_m: float
+    time_s: np.ndarray
+    values: dict[str, np.ndarray]  # of slip alone, as a gauge has components
+    smoothing_s: float = 0.0
+    bandwidth_Hz: float = np.inf
+
+    def prepared(self, *, shift_s: float = 0.0, zero_s: tuple[float, float] | None = None,
+                 low_pass_Hz: float | None = None,
+                 window_s: tuple[float, float] | None = None) -> SlipSensor:  # fmt: skip
+        """As Gauge.prepared."""
+        time_s, values, own_s = worked_on(
+            self.name, self.time_s, self.values, shift_s, zero_s, low_pass_Hz, window_s
+        )
+        return replace(
+            self, time_s=time_s, values=values, smoothing_s=float(np.hypot(self.smoothing_s, own_s))
+        )
+
+    def peak(self, part: str) -> float:
+        return float(np.abs(self.values[part] - np.median(self.values[part])).max())
+
+
+def sensor_of(channel: Channel) -> SlipSensor:
+    """A channel of kind slip."""
+    if channel.kind != "slip":
+        raise CaseError(f"channel {channel.name} is of kind {channel.kind}; slip alone is compared")
+    known = np.isfinite(channel.values)
+    if np.count_nonzero(known) < 2:
+        raise CaseError(f"channel {channel.name} has fewer than two values")
+    bandwidth_Hz = channel.bandwidth_Hz if channel.bandwidth_Hz > 0 else np.inf
+    values = {"slip": channel.values[known]}
+    return SlipSensor(channel.name, channel.x_m, channel.time_s[known], values, bandwidth_Hz=bandwidth_Hz)
+
+
+def slip_at(run: OpenRun, sensor: SlipSensor) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and slip [1, times], linear between the nodes about the sensor."""
+    history, x_m = run.history, run.x_m
+    if not x_m[0] <= sensor.x_m <= x_m[-1]:
+        raise CaseError(
+            f"{run.folder}: {sensor.name} records slip at x = {sensor.x_m:g} m; the interface goes from "
+            f"{x_m[0]:g} to {x_m[-1]:g} m"
+        )
+    right = int(np.clip(np.searchsorted(x_m, sensor.x_m), 1, len(x_m) - 1))
+    share = (sensor.x_m - x_m[right - 1]) / (x_m[right] - x_m[right - 1])
+    pair = history["slip_m"].isel(x_m=[right - 1, right]).to_numpy()
+    return history["time_s"].to_numpy(), ((1 - share) * pair[:, 0] + share * pair[:, 1])[None]
+
+
+def strain_at(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and the components or arms of a gauge by a run's probes [parts, times]."""
     rows = []
     for part in gauge.parts:
         of_part = weights(part)
         assert of_part is not None  # as the gauge was made
-        run_s, components = computed_at(run, gauge, gauge.places_m.get(part, (gauge.x_m, gauge.y_m)))
+        time_s, components = computed_at(run, gauge, gauge.places_m.get(part, (gauge.x_m, gauge.y_m)))
         rows.append(of_part @ components)
-    if gauge.smoothing_s > 0:
-        run_s, values = filtered(run_s, dict(zip(gauge.parts, rows, strict=True)), gauge.smoothing_s)
-        rows = list(values.values())
-    if gauge.bandwidth_Hz < np.inf:
-        past = amplifier(gauge.bandwidth_Hz, (run_s[-1] - run_s[0]) / (len(run_s) - 1))
-        rows = [smooth(np.pad(row, (len(past) - 1, 0), "edge"), past) for row in rows]
-    computed = np.array(rows)
-    measured = np.array([gauge.values[part] for part in gauge.parts])
-    unit = "1" if gauge.is_strain else "Pa"
-    return Trace(gauge.name, gauge.x_m, gauge.parts, unit, gauge.time_s, measured, run_s, computed)
+    return time_s, np.array(rows)
 
 
-def trace_of_slip(channel: Channel, run: OpenRun) -> Trace:
-    history = run.history
-    if not run.x_m[0] <= channel.x_m <= run.x_m[-1]:
-        raise CaseError(
-            f"{run.folder}: {channel.name} records slip at x = {channel.x_m:g} m; the interface goes from "
-            f"{run.x_m[0]:g} to {run.x_m[-1]:g} m"
+def trace_of(record: Gauge | SlipSensor, run: OpenRun) -> Trace:
+    """The run passes the record's filter and its amplifier, a low-pass of first order."""
+    if isinstance(record, Gauge):
+        parts, unit, (run_s, computed) = (
+            record.parts,
+            "1" if record.is_strain else "Pa",
+            strain_at(run, record),
         )
-    known = np.isfinite(channel.values)
-    nodes = np.clip(np.searchsorted(run.x_m, channel.x_m) + np.array([-1, 0]), 0, len(run.x_m) - 1)
-    pair = history["slip_m"].isel(x_m=nodes).to_numpy()
-    apart_m = float(np.diff(run.x_m[nodes])[0])
-    share = (channel.x_m - run.x_m[nodes[0]]) / apart_m if apart_m > 0 else 0.0
-    computed = (1 - share) * pair[:, 0] + share * pair[:, 1]
-    return Trace(
-        channel.name, channel.x_m, ["slip"], "m", channel.time_s[known], channel.values[None, known],
-        history["time_s"].to_numpy(), computed[None],
-    )  # fmt: skip
+    else:
+        parts, unit, (run_s, computed) = ["slip"], "m", slip_at(run, record)
+    if record.smoothing_s > 0:
+        run_s, values = filtered(run_s, dict(zip(parts, computed, strict=True)), record.smoothing_s)
+        computed = np.array(list(values.values()))
+    if record.bandwidth_Hz < np.inf:
+        step_s = (run_s[-1] - run_s[0]) / (len(run_s) - 1)
+        past = amplifier(record.bandwidth_Hz, step_s, len(run_s))
+        computed = np.array([smooth(np.pad(row, (len(past) - 1, 0), "edge"), past) for row in computed])
+    measured = np.array([record.values[part] for part in parts])
+    return Trace(record.name, record.x_m, parts, unit, record.time_s, measured, run_s, computed)
 
 
-def traces_of(records: Iterable[Gauge | Channel], run: OpenRun) -> list[Trace]:
+def traces_of(records: Iterable[Gauge | SlipSensor | Channel], run: OpenRun) -> tuple[list[Trace], list[str]]:
+    """Those that change, each with a name of its own, and notes."""
     instance(run, OpenRun, "run")
     given = in_order(records, "records", "a list of gauges, or of channels of slip")
     if not given:
         raise CaseError("records is empty")
-    made = []
+    made, notes = [], []
     for k, record in enumerate(given):
-        if isinstance(record, Gauge):
-            made.append(trace_of_gauge(record, run))
-        elif isinstance(record, Channel) and record.kind == "slip":
-            made.append(trace_of_slip(record, run))
-        else:
+        of = sensor_of(record) if isinstance(record, Channel) else record
+        if not isinstance(of, Gauge | SlipSensor):
             raise CaseError(f"records[{k}] is {shown(record)}; it must be a gauge, or a channel of slip")
-    return made
+        trace = trace_of(of, run)
+        changes = [bool(np.ptp(row) > 0) for row in trace.measured]
+        if constant := [part for part, does in zip(trace.parts, changes, strict=True) if not does]:
+            notes.append(f"{trace.name}: {', '.join(constant)} does not change: left out")
+        if any(changes):
+            kept = [part for part, does in zip(trace.parts, changes, strict=True) if does]
+            made.append(replace(trace, parts=kept, measured=trace.measured[changes],
+                                computed=trace.computed[changes]))  # fmt: skip
+    if not made:
+        raise CaseError("no trace of the records changes")
+    names = [trace.name for trace in made]
+    made = [replace(t, name=f"{t.name}, slip") if names.count(t.name) > 1 and t.unit == "m" else t
+            for t in made]  # fmt: skip
+    names = [trace.name for trace in made]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise CaseError(f"several traces are called {', '.join(twice)}; rename all but one")
+    return made, notes
+
+
+def shifts_of(traces: list[Trace], within_s: float) -> tuple[float, float]:
+    """First and last shift, up to within_s, at which records and run share LEAST_SHARED of the shorter."""
+    first, last = -within_s, within_s
+    for trace in traces:
+        (a, b), (c, d) = trace.time_s[[0, -1]], trace.run_s[[0, -1]]
+        least_s = LEAST_SHARED * min(b - a, d - c)
+        first, last = max(first, c - b + least_s), min(last, d - a - least_s)
+    if first > last:
+        up_to = f"each shift of the clock up to within_s = {within_s:g} s; widen it, or"
+        shifts = "any one shift of their clocks;" if within_s == np.inf else up_to
+        raise CaseError(
+            f"{', '.join(trace.name for trace in traces)}: records and run share less than half of their "
+            f"times at {shifts} move clocks by shift_s, in s, or leave a record out"
+        )
+    return first, last
 
 
 def best_shift(traces: list[Trace], within_s: float) -> float:
     """That of the least mean square of all misfits: of even shifts, by some of the times, then between the
     neighbours of the best by all."""
+    first, last = shifts_of(traces, within_s)
 
     def cost(shift_s: float, of: list[Trace] = traces) -> float:
-        return float(np.mean([np.mean(trace.misfit(shift_s) ** 2) for trace in of]))
+        found = float(np.mean([np.mean(trace.misfit(shift_s) ** 2) for trace in of]))
+        return found if np.isfinite(found) else np.inf
 
     if within_s == 0:
         return 0.0
+    if first == last:
+        return first
     step = min(float(np.median(np.diff(trace.time_s))) for trace in traces)
-    n = int(np.ceil(within_s / max(step, within_s / MOST_SHIFTS)))
-    shifts = np.linspace(-within_s, within_s, 2 * n + 1)
+    n = int(np.ceil((last - first) / max(step, (last - first) / MOST_SHIFTS)))
+    shifts = np.union1d(np.linspace(first, last, n + 1), [0.0] if first <= 0 <= last else [])
     thin = [trace.thinned() for trace in traces]
     k = int(np.argmin([cost(s, thin) for s in shifts]))
-    ends = shifts[max(k - 1, 0)], shifts[min(k + 1, 2 * n)]
+    ends = shifts[max(k - 1, 0)], shifts[min(k + 1, len(shifts) - 1)]
     refined = minimize_scalar(cost, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x
     return float(min((shifts[k], refined), key=cost))
 
 
 def compare_traces(
-    records: Iterable[Gauge | Channel], run: OpenRun, *, within_s: float = 50e-6
+    records: Iterable[Gauge | SlipSensor | Channel], run: OpenRun, *, within_s: float = np.inf
 ) -> xr.Dataset:
     """A run beside traces: its probes at the places of gauges, its slip at those of slip sensors.
 
     records: gauges, as `read_gauges` and `Event.gauges` have them, and channels of kind slip.
-    within_s: the largest shift of the clock that is tried; 0: none. The probes pass the filter that
+    within_s: the largest shift of the clock that is tried, by default all that leave half of the shorter of
+    record and run; 0: none. The probes pass the filter that
     `prepared` has put on a record, and its amplifier of bandwidth_Hz.
 
     Returns a Dataset over `trace` and `component`: misfit at the shift common to all, rms of the difference
     over that of the record, both about their means, 0 where they agree, and misfit_error, its standard
     error; own_misfit at each trace's own shift; shift_s and own_shift_s: the run's clock less the record's.
     NaN for components that were not recorded. Of all: misfit_of_all, the root of their mean square, with
-    misfit_of_all_error. `notes` says what speaks against the comparison."""
-    traces = traces_of(records, run)
-    within = number(within_s, "within_s", least=0, finite=True)
+    misfit_of_all_error; covered, the share of a record's times that the run has. A component that does not
+    change is left out. `notes` says what speaks against the comparison."""
+    traces, notes = traces_of(records, run)
+    within = number(within_s, "within_s", least=0)
     shift = best_shift(traces, within)
-    if not np.isfinite(traces[0].misfit(shift)).all():
-        raise CaseError(
-            f"records and run share less than half of their times at each shift of the clock up to within_s "
-            f"= {within:g} s; widen it, or move the records' clock by shift_s, in s"
-        )
     own = [best_shift([trace], within) for trace in traces]
     parts = list(dict.fromkeys(part for trace in traces for part in trace.parts))
     found = {name: np.full((len(traces), len(parts)), np.nan)
@@ -195,17 +278,29 @@ def compare_traces(
         found["misfit"][k, at], found["misfit_error"][k, at] = trace.misfit(shift), trace.error(shift)
         found["own_misfit"][k, at] = trace.misfit(own[k])
     shifts = {"all together": shift} | {t.name: s for t, s in zip(traces, own, strict=True)}
-    ends = [name for name, s in shifts.items() if within > 0 and abs(s) > 0.999 * within]
-    notes = []
+    ends = [name for name, s in shifts.items() if 0 < within < np.inf and abs(s) > 0.999 * within]
     if ends:
         notes.append(f"shift at the end of its range, within_s = {within:g} s: {', '.join(ends)}; widen it")
     large = [t.name for k, t in enumerate(traces) if np.nanmax(found["misfit"][k]) > 1]
     if large:
         notes.append(f"the run explains nothing of a component of {', '.join(large)}")
+    covered = np.array([len(trace.both(shift)[0]) / len(trace.time_s) for trace in traces])
+    if (covered < MOST_UNCOVERED).any():
+        notes.append(
+            f"the run covers {100 * covered.min():.0f} % of a record: {traces[covered.argmin()].name}"
+        )
     total = rms(found["misfit"].ravel(), found["misfit_error"].ravel())
     return xr.Dataset(
         {name: (("trace", "component"), values, {"units": "1"}) for name, values in found.items()}
         | {"own_shift_s": ("trace", own, {"units": "s"}), "shift_s": ((), shift, {"units": "s"})}
+        | {"covered": ("trace", covered, {"units": "1", "long_name": "share of the record's times"})}
+        | {
+            "n": (
+                (),
+                sum(len(trace.both(shift)[0]) for trace in traces),
+                {"long_name": "times that both have"},
+            )
+        }
         | of_all(total, "1"),
         {"trace": [t.name for t in traces], "component": parts, "x_m": ("trace", [t.x_m for t in traces])},
         {"notes": notes},

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from slipfront import command
 from slipfront.figures.style import RC
-from slipfront.files import DataError, one_line
+from slipfront.files import DataError, one_line, open_file
 
 MARK_COLOUR = "#b2182b"
 Drawn = TypeVar("Drawn")
@@ -26,6 +26,7 @@ KINDS: dict[str, dict[str, str | None]] = {
     "svg": {"Date": None},
 }
 ENDINGS = [f".{kind}" for kind in KINDS]
+BEGINNINGS = (b"\x89PNG", b"%PDF", b"<?xml", b"<svg")  # of their files
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,12 @@ def checked(picture: Path) -> Path:
     """The path, unless it does not name a picture, or names what is no regular file."""
     if picture.suffix.lower() not in ENDINGS:
         raise DataError(f"{picture}: the picture's name must end with {', '.join(ENDINGS)}")
-    return command.replaceable(picture)
+    if command.replaceable(picture).exists() and picture.stat().st_size > 0:
+        with open_file(picture) as stream:
+            beginning = stream.read(len(max(BEGINNINGS, key=len)))
+        if not beginning.startswith(BEGINNINGS):
+            raise DataError(f"{picture}: is there and no picture: not replaced; give another name")
+    return picture
 
 
 def write_drawing(picture: Path, drawing: Drawing) -> None:

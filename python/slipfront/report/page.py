@@ -35,6 +35,7 @@ class Page:
     parts: list[str]
     data: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)  # to print beside the file's name
+    mark: str = MARK
 
     @property
     def has_plots(self) -> bool:
@@ -98,7 +99,7 @@ def rendered(page: Page) -> str:
     body = "\n".join(part for part in page.parts if part)
     data = embedded(page.data) if page.has_plots else ""
     lines = [
-        MARK,
+        page.mark,
         '<html lang="en"><head><meta charset="utf-8">',
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -113,14 +114,14 @@ def rendered(page: Page) -> str:
     return "\n".join(lines) + "\n"
 
 
-def require_replaceable(file: Path) -> None:
-    """Refuses a path where anything but a page of ours is."""
-    command.require_own(file, MARK.encode(), "a report")
+def require_replaceable(file: Path, mark: str = MARK, what: str = "a report") -> None:
+    """Refuses a path where anything but a page with our mark is."""
+    command.require_own(file, mark.encode(), what)
 
 
 def write_page(page: Page, file: Path) -> list[str]:
-    """Writes it whole or not at all; returns what to print."""
-    require_replaceable(file)
+    """Writes it whole or not at all, in place of one with its mark; returns what to print."""
+    require_replaceable(file, page.mark)
     text = rendered(page).encode()
     with command.publishing_into(file.parent) as made:
         (made / file.name).write_bytes(text)

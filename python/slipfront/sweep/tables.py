@@ -118,6 +118,8 @@ def dataset(sweep: Sweep, table: pd.DataFrame, program: str, waves: dict[str, fl
     import xarray as xr
 
     short = short_names(list(sweep.vary))
+    taken = {q.name for q in QUANTITIES} | TEXTS.keys()
+    short = {key: key if name in taken else name for key, name in short.items()}
     points = sweep.points()
     if is_grid := sweep.combine == "grid":
         columns = {key: as_array(values_of(key, spec)) for key, spec in sweep.vary.items()}
