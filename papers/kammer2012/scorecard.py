@@ -794,11 +794,13 @@ def agrees_with_experiment(r: Reproduction) -> Found:
     if r.experiment is None:
         return "not tested: no data", [], None
     deviation, n = float(r.experiment["misfit_of_all"]), int(r.experiment["n"])
+    if n == 0:
+        return "not tested: no point within the range of t_s/p_s of our fronts", [], None
     return (
         f"median relative deviation {percent(deviation)} over the {n} of {r.experiment.sizes['point']} "
         "points within the range of t_s/p_s of our fronts",
         [("deviation", 100 * deviation, "%")],
-        deviation <= 0.2 if n else None,
+        deviation <= 0.2,
     )
 
 

@@ -311,6 +311,8 @@ def cut(part: Part, window: Window, cutting: Cutting) -> Channel | None:
         return None
     if missing := int(np.isnan(values).sum()):
         window.note(f"{missing} of {len(values)} values missing or infinite", wiring.name)
+    if wiring.kind != "trigger" and np.nanmin(values) == np.nanmax(values):
+        window.note("does not change: dead, or not connected", wiring.name)
     if window.first_s > -np.inf:
         step = (time_s[-1] - time_s[0]) / (len(time_s) - 1)
         if time_s[0] > window.first_s + 1.5 * step or time_s[-1] < window.last_s - 1.5 * step:

@@ -206,17 +206,25 @@ def top_of(time_s: np.ndarray, values: np.ndarray, noise: float, top: int) -> tu
 def top_before_fall(trace: Trace, times_noise: float) -> tuple[int, int] | None:
     """The sample with the largest value of either sign from which the trace falls most, and the sign.
 
-    A tip's peak is followed by a dip, from which the trace comes back: of both signs that of the earlier top
-    counts, unless it falls by less than half of the other."""
+    A dip follows a tip's peak, and the trace comes back from it: where the fall to the dip is half of that
+    rise or more, the peak counts."""
     found = []
     for sign in (1, -1):
         w = sign * trace.values
         first, last = largest_fall(w)
         least = times_noise * trace.noise
         if w[first] > least and w[first] - w[last] > 2 * least:  # noise alone falls by some 8 times itself
-            found.append((float(w[first] - w[last]), first, sign))
-    most = max((fall for fall, *_ in found), default=0.0)
-    return min(((first, sign) for fall, first, sign in found if 2 * fall >= most), default=None)
+            found.append((float(w[first] - w[last]), first, last, sign))
+    if not found:
+        return None
+    (most, first, _, sign), *rest = sorted(found, reverse=True)
+    for fall, peak, dip, sign_of_peak in rest:
+        if abs(dip - first) > HOLD or 2 * fall < most:
+            continue
+        is_quiet = np.abs(trace.values[peak:dip]) < times_noise * trace.noise
+        if 2 * np.count_nonzero(is_quiet) < dip - peak:  # of one passage, not of something earlier
+            return peak, sign_of_peak
+    return first, sign
 
 
 def peak(trace: Trace, times_noise: float) -> Onset | str:

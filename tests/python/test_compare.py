@@ -633,3 +633,16 @@ def test_arguments_that_are_refused(run, work, why):
 def test_a_constant_clock_has_no_ratio(run):
     found = slipfront.compare_onsets(run, {"x_m": PLACES_M, "onset_s": np.full(len(PLACES_M), 12.3)})
     assert np.isnan(found.time_ratio)
+
+
+def test_a_sweep_over_a_key_that_is_also_a_result(files, tmp_path, capsys, monkeypatch):
+    """end_s is a key of the case and a column of the table."""
+    monkeypatch.setenv("SLIPFRONT_PROGRAM", str(built()))
+    case = write_case(tmp_path, {name: of for name, of in BLOCKS.items() if name != "probes"})
+    found = run_sweep(case, {"time.end_s": [20e-6, 180e-6]}, tmp_path / "ends", quiet=True)
+    assert found.sizes["time.end_s"] == 2 and float(found.end_s[1]) == pytest.approx(180e-6, rel=0.01)
+    lines = called(capsys, tmp_path / "ends", files["onsets"])
+    assert (
+        lines[-1]
+        == "onsets.csv: nearest: time.end_s = 0.00018, of the 1 points that share most with the record"
+    )

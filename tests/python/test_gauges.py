@@ -684,6 +684,14 @@ def test_the_command(run, fits, tmp_path, capsys):
         assert said in refused(capsys, *arguments)
 
 
+def test_the_table_of_a_rosette_with_a_dead_arm():
+    of = record(noise=1e-7)
+    normal, shear = (of.values["xx"] + of.values["yy"]) / 2, of.values["xy"]
+    gauge = dataclasses.replace(of, values={"-45": normal - shear, "45": normal + shear})
+    row = gauges_command.row_of(slipfront.fit_tip(gauge, EQUAL), True)
+    assert row["Gamma_J_per_m2"] > 0 and row["offset_strain_xx"] == ""
+
+
 @pytest.mark.parametrize(
     "options, why",
     [

@@ -105,6 +105,19 @@ def test_peaks_are_where_the_field_has_them(noise):
     assert np.median(picks.error_s) < {0.01: 0.6e-6, 1.0: 1.5e-6, 4.0: 4e-6}[noise]
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_peak_counts_and_not_the_dip_behind_it(sign):
+    """Near the interface a trace comes back from the dip by more than it fell to it."""
+    made = event(noise=0.2)
+    (name, channel), *_ = made.channels.items()
+    peak_s, dip_s = tip_times(1)[0], tip_times(1)[0] + 12e-6
+    shape = np.exp(-0.5 * ((TIME_S - peak_s) / 4e-6) ** 2) - 2 * np.exp(-0.5 * ((TIME_S - dip_s) / 4e-6) ** 2)
+    values = sign * channel.values.max() * (shape + 2 * np.clip((TIME_S - dip_s) / 20e-6, 0, 1))
+    found = slipfront.pick_events([with_channel(made, name, values=values)])
+    at = int(np.argmin(np.abs(found.x_m.values - X_M[0])))
+    assert float(found.onset_s[at]) == pytest.approx(peak_s, abs=1.5e-6)
+
+
 def test_another_top_as_high_is_doubted():
     """A broad hump before the front's peak: which is it, the noise does not tell."""
     made = event(noise=0.2)

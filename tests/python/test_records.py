@@ -380,6 +380,18 @@ def test_without_a_cut_the_record_is_the_event(experiment):
     assert zeroed.channels["SG_45"].zero_level == pytest.approx(OFFSET + 2e-3 * DRIFT_PER_S, abs=NOISE)
 
 
+def test_a_channel_that_does_not_change_is_told(experiment):
+    (file,), channel_table = experiment(npz)
+    held = dict(np.load(file))
+    held[FAST[0]] = np.full_like(held[FAST[0]], 0.3)
+    np.savez(file, **held)
+    found = slipfront.read_recorders([file], channel_table, **WINDOW)
+    told = [
+        [note for note in event.notes if "does not change: dead, or not connected" in note] for event in found
+    ]
+    assert found and all(len(notes) == 1 for notes in told)
+
+
 def test_windows_that_overlap_or_leave_the_record_are_told(experiment):
     found = slipfront.read_recorders(*experiment(), trigger="trig", before_s=4e-3, after_s=6e-3)
     assert "window overlaps that of event 2" in found[0].notes
