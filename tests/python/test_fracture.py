@@ -118,7 +118,7 @@ def test_the_program_replaces_no_other_file(tmp_path):
     write_case(tmp_path, CASE)
     (tmp_path / "mine.csv").write_text("direction,x_m\n")
     said = refusal(program("fracture", "case.toml", "-o", "mine.csv", cwd=tmp_path))
-    told = "mine.csv: is there and not a table of slipfront fracture: not replaced; give another name"
+    told = "mine.csv: is there and not a table of slipfront fracture: not replaced; give another name with -o"
     assert said == told and (tmp_path / "mine.csv").read_text() == "direction,x_m\n"
     os.mkfifo(tmp_path / "pipe")
     assert "pipe: is no regular file" in refusal(program("fracture", "case.toml", "-o", "pipe", cwd=tmp_path))
