@@ -2,8 +2,9 @@
 """The file of a laboratory's recorder, SYNTHETIC: a run's probes as the volts of rosettes' bridges.
 
 usage: python recorder.py RUN daq.h5
-Arms at -45, 90 and 45 degrees, quarter bridges at 5 V, gauge factor 2.1, gain 1000, amplifiers of 500 kHz, 12 bits
-over 10 V at 2 MHz, 1 ue of noise; the event is at 0.35 s of the recorder's clock, its trigger 100 us later."""
+Arms at -45, 90 and 45 degrees, quarter bridges at 5 V, gauge factor 2.1, gain 1000, amplifiers of 500 kHz,
+12 bits over 10 V at 2 MHz, 1 ue of noise; the event is at 0.35 s of the recorder's clock, its trigger 100 us
+later."""
 
 import sys
 
