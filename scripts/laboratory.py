@@ -32,7 +32,7 @@ def main() -> None:
         def slipfront(command: str) -> None:
             call(options.program, *command.format(lab=LAB, figures=FIGURES).split())
 
-        slipfront("run {lab}/case.toml -q --overwrite -o out")
+        slipfront("run {lab}/rosettes.toml -q --overwrite -o out")
         call(sys.executable, LAB / "recorder.py", "out", "daq.h5")
         slipfront(f"records daq.h5 {WINDOW} -o records.nc")
         slipfront("picks records.nc -o picks.csv --figure {figures}/record_section.png")

@@ -23,7 +23,7 @@ MATERIAL = ["--youngs-modulus-pa", "5.65e9", "--poissons-ratio", "0.33", "--dens
 def folder(tmp_path_factory):
     """With the run and its records.nc."""
     made = tmp_path_factory.mktemp("laboratory")
-    assert program("run", LAB / "case.toml", "-q", "-o", "out", cwd=made).returncode == 0
+    assert program("run", LAB / "rosettes.toml", "-q", "-o", "out", cwd=made).returncode == 0
     here = os.environ | {"PYTHONPATH": str(ROOT / "python")}
     subprocess.run([sys.executable, LAB / "recorder.py", "out", "daq.h5"], cwd=made, env=here, check=True)
     window = ["--trigger", "trig", "--before-s", "1e-3", "--after-s", "90e-6", "--zero-s=-1e-3,-200e-6"]
