@@ -202,7 +202,13 @@ def split_line(file: Path, line: int, text: str, separator: str = ",") -> list[s
         raise DataError(f"{file}:{line}: not a line of CSV: {error}") from None
 
 
-def read_table(file: Path, by_hand: bool = False, growing: bool = False, separators: str = ",") -> Table:
+def read_table(
+    file: Path,
+    by_hand: bool = False,
+    growing: bool = False,
+    separators: str = ",",
+    header_only: bool = False,
+) -> Table:
     """A table of the program ends with a whole line, or it was cut off; one made by hand need not.
 
     Of a growing one, which a run still appends to or was killed over, a cut line at the end is passed over.
@@ -223,6 +229,8 @@ def read_table(file: Path, by_hand: bool = False, growing: bool = False, separat
         if header is None:
             separator = next((sign for sign in separators if sign in content), separator)
             header = split_line(file, line, content, separator)
+            if header_only:
+                break
             continue
         cells = split_line(file, line, content, separator)
         if not any(cells):

@@ -134,8 +134,12 @@ class Gauge:
 
     def peak(self, part: str) -> float:
         """The largest departure of a component from its median."""
-        values = self.values[part]
-        return float(np.abs(values - np.median(values)).max())
+        return largest_departure(self.values[part])
+
+
+def largest_departure(values: np.ndarray) -> float:
+    """From the median."""
+    return float(np.abs(values - np.median(values)).max())
 
 
 def weights(part: str) -> np.ndarray | None:
@@ -186,10 +190,10 @@ def worked_on(
     of: str,
     time_s: np.ndarray,
     values: dict[str, np.ndarray],
-    shift_s: float,
-    zero_s: tuple[float, float] | None,
-    low_pass_Hz: float | None,
-    window_s: tuple[float, float] | None,
+    shift_s: float = 0.0,
+    zero_s: tuple[float, float] | None = None,
+    low_pass_Hz: float | None = None,
+    window_s: tuple[float, float] | None = None,
 ) -> tuple[np.ndarray, dict[str, np.ndarray], float]:
     """Times and values as Gauge.prepared makes them, and the standard deviation of the filter."""
     time_s, own_s = time_s + number(shift_s, "shift_s", finite=True), 0.0

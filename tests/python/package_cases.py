@@ -29,6 +29,23 @@ output.snapshot_times_s = [20e-6, 60e-6]
 """
 
 
+def blocks(size_m: float, damping_s: float, d_c_m: float, half_length_m: float, end_s: float) -> dict:
+    """Two blocks of PMMA that a front crosses to +x, without probes."""
+    pmma = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180}
+    body = {"height_m": 0.06, "sides": "absorbing"}
+    return {
+        "plate": {"width_m": 0.15, "corner": "none", "element_size_m": size_m, "top": "absorbing", **body},
+        "material": {"stiffness_damping_s": damping_s, **pmma},
+        "base": {"kind": "body", "bottom": "absorbing", "stiffness_damping_s": damping_s, **body, **pmma},
+        "loading": {"method": "prestress"},
+        "prestress": {"t_Pa": 1.8e6, "p_Pa": 5e6},
+        "friction": {"law": "slip_weakening", "mu_s": 0.5, "mu_k": 0.3, "d_c_m": d_c_m},
+        "event": {"kind": "nucleation"},
+        "nucleation": {"form": "weakened", "x_m": 0.03, "half_length_m": half_length_m, "taper_m": 5e-3},
+        "time": {"end_s": end_s, "quiet_s": float("inf")},
+    }
+
+
 def program(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     return call(built(), *arguments, cwd=cwd)
 

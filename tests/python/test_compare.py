@@ -11,28 +11,17 @@ import pandas as pd
 import pytest
 import slipfront
 from common import built, rows_of
-from package_cases import PLATE, TILT, results_of, write_case
+from package_cases import PLATE, TILT, blocks, results_of, write_case
 from slipfront.compare import command
 from slipfront.compare.onsets import onsets_at
 from slipfront.compare.speeds import points_of
 from slipfront.records import Writer
 from slipfront.sweep import run as run_sweep
 
-PMMA = {"youngs_modulus_Pa": 5.65e9, "poissons_ratio": 0.33, "density_kg_per_m3": 1180}
-BLOCKS = {
-    "plate": {"width_m": 0.15, "corner": "none", "element_size_m": 2e-3, "height_m": 0.06,
-              "sides": "absorbing", "top": "absorbing"},
-    "material": {"stiffness_damping_s": 0.1e-6, **PMMA},
-    "base": {"kind": "body", "height_m": 0.06, "sides": "absorbing", "bottom": "absorbing",
-             "stiffness_damping_s": 0.1e-6, **PMMA},
-    "loading": {"method": "prestress"},
-    "prestress": {"t_Pa": 1.8e6, "p_Pa": 5e6},
-    "friction": {"law": "slip_weakening", "mu_s": 0.5, "mu_k": 0.3, "d_c_m": 4e-6},
-    "event": {"kind": "nucleation"},
-    "nucleation": {"form": "weakened", "x_m": 0.03, "half_length_m": 0.025, "taper_m": 5e-3},
-    "time": {"end_s": 180e-6, "quiet_s": float("inf")},
-    "probes": {"x_m": [0.0875, 0.1075, 0.1275, 0.109], "y_m": [5e-3, 5e-3, 5e-3, 5e-3],
-               "names": ["SG1", "SG2", "SG3", "beside"], "interval_s": 0.25e-6},
+BLOCKS = blocks(2e-3, 0.1e-6, d_c_m=4e-6, half_length_m=0.025, end_s=180e-6)
+PROBES = {
+    "x_m": [0.0875, 0.1075, 0.1275, 0.109], "y_m": [5e-3, 5e-3, 5e-3, 5e-3],
+    "names": ["SG1", "SG2", "SG3", "beside"], "interval_s": 0.25e-6,
 }  # fmt: skip
 SEQUENCE = f"""\
 {PLATE}{TILT}plate.element_size_m = 4e-3
@@ -45,7 +34,7 @@ PLACES_M = np.linspace(0.07, 0.145, 12)
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """A front between two blocks of PMMA."""
-    return slipfront.run(BLOCKS, output=tmp_path_factory.mktemp("compare") / "out")
+    return slipfront.run(BLOCKS | {"probes": PROBES}, output=tmp_path_factory.mktemp("compare") / "out")
 
 
 @pytest.fixture(scope="module")
@@ -419,7 +408,7 @@ def test_an_event_of_a_recorder(run, tmp_path, capsys):
 
 def test_the_best_point_of_a_sweep(run, files, tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("SLIPFRONT_PROGRAM", str(built()))
-    case = write_case(tmp_path, {name: of for name, of in BLOCKS.items() if name != "probes"})
+    case = write_case(tmp_path, BLOCKS)
     folder, page, table = tmp_path / "sweep", tmp_path / "page.html", tmp_path / "misfits.csv"
     run_sweep(case, {"friction.d_c_m": [3e-6, 4e-6, 5e-6]}, folder, quiet=True)
     lines = called(capsys, folder, files["onsets"], files["speeds"], "-o", page, "--table", table)
@@ -559,21 +548,19 @@ def test_slip_is_prepared_as_gauges_are(run, tmp_path, capsys):
 
 
 def test_a_run_that_did_not_come_to_its_end_is_told(files, tmp_path, capsys):
-    case = {name: of for name, of in BLOCKS.items() if name != "probes"}
-
     def stop(*_):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        slipfront.run(case, output=tmp_path / "cut", progress=stop)
+        slipfront.run(BLOCKS, output=tmp_path / "cut", progress=stop)
     lines = called(capsys, tmp_path / "cut", files["onsets"])
     assert "cut: interrupted: compared as far as it goes" in lines[-1]
 
 
 def test_speeds_are_over_the_wave_speed_of_each_run(run, tmp_path):
-    stiff = {name: dict(of) for name, of in BLOCKS.items() if name != "probes"}
+    stiff = {name: dict(of) for name, of in BLOCKS.items()}
     for body in ("material", "base"):
-        stiff[body] |= {"youngs_modulus_Pa": 4 * PMMA["youngs_modulus_Pa"]}
+        stiff[body] |= {"youngs_modulus_Pa": 4 * stiff[body]["youngs_modulus_Pa"]}
     other = slipfront.run(stiff, output=tmp_path / "stiff")
     record = {"static_ratio": [0.36], "v_over_c_L": [0.4]}
     one, two = (slipfront.compare_speeds(runs, record) for runs in ([run, other], [other, run]))
@@ -638,7 +625,7 @@ def test_a_constant_clock_has_no_ratio(run):
 def test_a_sweep_over_a_key_that_is_also_a_result(files, tmp_path, capsys, monkeypatch):
     """end_s is a key of the case and a column of the table."""
     monkeypatch.setenv("SLIPFRONT_PROGRAM", str(built()))
-    case = write_case(tmp_path, {name: of for name, of in BLOCKS.items() if name != "probes"})
+    case = write_case(tmp_path, BLOCKS)
     found = run_sweep(case, {"time.end_s": [20e-6, 180e-6]}, tmp_path / "ends", quiet=True)
     assert found.sizes["time.end_s"] == 2 and float(found.end_s[1]) == pytest.approx(180e-6, rel=0.01)
     lines = called(capsys, tmp_path / "ends", files["onsets"])

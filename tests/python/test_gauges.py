@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import slipfront
 from common import ROOT, rows_of
+from package_cases import blocks
 from package_cases import refused as one_refusal
 from slipfront import gauges, gauges_command, near_tip, tip_fit
 
@@ -592,24 +593,12 @@ def test_bad_records_are_refused(tmp_path, text, why):
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """A front between two blocks of PMMA, probes on both sides; Gamma = (mu_s - mu_k) p d_c/2 = 1.1 J/m2."""
-    size = {"element_size_m": 1e-3, "height_m": 0.06, "sides": "absorbing"}
-    return slipfront.run(
-        {
-            "plate": {"width_m": 0.15, "corner": "none", "top": "absorbing", **size},
-            "material": {"stiffness_damping_s": 0.05e-6, **PMMA},
-            "base": {"kind": "body", "height_m": 0.06, "sides": "absorbing", "bottom": "absorbing",
-                     "stiffness_damping_s": 0.05e-6, **PMMA},
-            "loading": {"method": "prestress"},
-            "prestress": {"t_Pa": 1.8e6, "p_Pa": 5e6},
-            "friction": {"law": "slip_weakening", "mu_s": 0.5, "mu_k": 0.3, "d_c_m": 2.2e-6},
-            "event": {"kind": "nucleation"},
-            "nucleation": {"form": "weakened", "x_m": 0.03, "half_length_m": 0.02, "taper_m": 5e-3},
-            "time": {"end_s": 140e-6, "quiet_s": float("inf")},
-            "probes": {"x_m": [0.0875, 0.1075, 0.1275, 0.1075], "y_m": [3.5e-3, 3.5e-3, 3.5e-3, -3.5e-3],
-                       "names": ["SG1", "SG2", "SG3", "below"], "interval_s": 0.25e-6},
-        },
-        output=tmp_path_factory.mktemp("gauges") / "out",
-    )  # fmt: skip
+    probes = {
+        "x_m": [0.0875, 0.1075, 0.1275, 0.1075], "y_m": [3.5e-3, 3.5e-3, 3.5e-3, -3.5e-3],
+        "names": ["SG1", "SG2", "SG3", "below"], "interval_s": 0.25e-6,
+    }  # fmt: skip
+    case = blocks(1e-3, 0.05e-6, d_c_m=2.2e-6, half_length_m=0.02, end_s=140e-6) | {"probes": probes}
+    return slipfront.run(case, output=tmp_path_factory.mktemp("gauges") / "out")
 
 
 @pytest.fixture(scope="module")

@@ -23,14 +23,14 @@ from slipfront.compare.speeds import WITHIN
 from slipfront.errors import Error
 from slipfront.figures.drawing import ENDINGS, checked, guarded, write_results
 from slipfront.figures.style import RC
-from slipfront.files import DataError, exists, is_folder
+from slipfront.files import DataError, exists, is_folder, is_number
 from slipfront.folder import RUN, SEQUENCE, UNFINISHED
 from slipfront.fronts_command import mark
 from slipfront.gauges_command import add_preparation
 from slipfront.opened_sequence import opened
 from slipfront.report.page import require_replaceable, write_page
 from slipfront.sweep import folder as sweep
-from slipfront.sweep.points import short_names, text_of
+from slipfront.sweep.points import Value, short_names, text_of
 
 PAGES = (".html", ".htm")
 ABOUT_ALL = 0.95  # of the most that a run shares with a record
@@ -47,7 +47,7 @@ class Target:
     """Results to compare: a run, a sequence or a point of a sweep; or why there are none."""
 
     name: str
-    values: dict[str, str] = field(default_factory=dict)  # of a sweep's keys
+    values: dict[str, Value] = field(default_factory=dict)  # of a sweep's keys
     runs: list[Opened] = field(default_factory=list)
     why_not: str = ""
     is_single: bool = True  # not several together
@@ -92,24 +92,17 @@ class Compared:
     def best_in_words(self, k: int) -> str:
         """Which point is nearest, of how many, and whether a wider sweep may have a nearer one."""
         best, points = self.targets[k], [of for of in self.targets if of.is_single]
-        told = ", ".join(f"{key} = {value}" for key, value in best.values.items())
+        told = ", ".join(f"{key} = {text_of(value)}" for key, value in best.values.items())
         if len(self.eligible) < len(points):
             told += f", of the {len(self.eligible)} points that share most with the record"
         at_end = []
         for key, value in best.values.items():
-            every = sorted({number for of in points if (number := number_of(of.values[key])) is not None})
-            if len(every) > 2 and number_of(value) in (every[0], every[-1]):
+            every = sorted({of.values[key] for of in points if is_number(of.values[key])})
+            if len(every) > 2 and value in (every[0], every[-1]):
                 at_end.append(key)
         return f"nearest: {told}" + (
             f"; at the end of {', '.join(at_end)}: widen the sweep" if at_end else ""
         )
-
-
-def number_of(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
@@ -166,7 +159,7 @@ def targets_in(folder: Path) -> list[Target]:
     made = []
     for point in sweep.read_definition(folder).points():
         place = sweep.place_of(folder, point)
-        target = Target(point.name, {key: text_of(value) for key, value in point.values.items()})
+        target = Target(point.name, dict(point.values))
         wrong = sweep.what_is_wrong(place, point)
         if wrong is None:
             target.runs = [opened(place)]
@@ -201,7 +194,8 @@ def rows_of(of: Compared) -> list[dict[str, object]]:
     rows = []
     for k, (target, found) in enumerate(zip(of.targets, of.found, strict=True)):
         value, error = of.misfit(k)
-        row: dict[str, object] = {"record": of.record.label, "run": target.name, **target.values}
+        row: dict[str, object] = {"record": of.record.label, "run": target.name}
+        row |= {key: text_of(value) for key, value in target.values.items()}
         row |= {"misfit": value, "misfit_error": error, "unit": "", "shared": of.n_shared[k]}
         if isinstance(found, str):
             row["message"] = found
@@ -222,7 +216,8 @@ def lines_of(of: Compared) -> list[str]:
     short = short_names(list(of.targets[0].values))
     lines = []
     for target, found in zip(of.targets, of.found, strict=True):
-        name = ", ".join(f"{short[key]} = {value}" for key, value in target.values.items()) or target.name
+        values = (f"{short[key]} = {text_of(value)}" for key, value in target.values.items())
+        name = ", ".join(values) or target.name
         told = [found] if isinstance(found, str) else [of.kind.lines(found)[0], *found.attrs["notes"]]
         lines.append(f"{head}{name}: {'; '.join([*told, *(target.notes if target.is_single else [])])}")
     if of.best is not None:

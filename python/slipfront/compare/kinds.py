@@ -89,6 +89,16 @@ class Kind(Protocol):
     ) -> Drawing: ...
 
 
+def header_of(file: Path) -> list[str]:
+    header = read_table(file, by_hand=True, separators=SEPARATORS, header_only=True).header
+    return [name for name in header if name]
+
+
+def names_in(file: Path) -> list[str]:
+    """Names of columns in small letters, whole and without their units."""
+    return [bare for name in header_of(file) for bare in (name.strip().lower(), name_and_unit(name)[0])]
+
+
 def columns_in(file: Path, quantities: Mapping[str, Any], needed: tuple[str, ...]) -> dict[str, np.ndarray]:
     table = read_table(file, by_hand=True, separators=SEPARATORS)
     names = [name for name in table.header if name]
@@ -205,9 +215,7 @@ class Cycles:
         return not {*OF_FORCE["force"][0], *shear, "begin"}.isdisjoint(names) and "x" not in names
 
     def read(self, file: Path, options: argparse.Namespace) -> list[Record]:
-        table = read_table(file, by_hand=True, separators=SEPARATORS)
-        bare = {name_and_unit(name)[0] for name in table.header}
-        if not bare & set(OF_FORCE["force"][0]):
+        if not set(names_in(file)) & set(OF_FORCE["force"][0]):
             if options.drop_within_s is not None:
                 raise DataError(f"{file}: is a table of events: leave out --drop-within-s")
             return [Record(file.name, columns_in(file, OF_CYCLES, ("begin_s",)))]
@@ -311,10 +319,8 @@ def kind_of(file: Path) -> Kind:
         return next(kind for kind in KINDS if isinstance(kind, Traces))
     if file.suffix.lower() == ".mat":
         return next(kind for kind in KINDS if isinstance(kind, Onsets))
-    header = read_table(file, by_hand=True, separators=SEPARATORS).header
-    names = [bare for name in header if name for bare in (name.strip().lower(), name_and_unit(name)[0])]
-    kind = next((kind for kind in KINDS if kind.holds(names)), None)
+    kind = next((kind for kind in KINDS if kind.holds(names_in(file))), None)
     if kind is None:
-        has = ", ".join(f"'{one_line(name)}'" for name in header if name) or "none"
+        has = ", ".join(f"'{one_line(name)}'" for name in header_of(file)) or "none"
         raise DataError(f"{file}: has the columns {has}; wanted are {WANTED}")
     return kind

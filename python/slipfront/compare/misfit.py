@@ -52,5 +52,5 @@ def of_all(found: Estimate, unit: str) -> dict[str, xr.Variable]:
     }
 
 
-def estimate_of(found: xr.Dataset, name: str = "misfit_of_all", error: str = "") -> Estimate:
-    return Estimate(float(found[name]), float(found[error or f"{name}_error"]))
+def estimate_of(found: xr.Dataset, name: str = "misfit_of_all") -> Estimate:
+    return Estimate(float(found[name]), float(found[f"{name}_error"]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,16 @@ from scipy.optimize import minimize_scalar
 
 from slipfront.compare.misfit import of_all, rms
 from slipfront.errors import CaseError
-from slipfront.gauges import Gauge, amplifier, filtered, gauges_of, smooth, weights, worked_on
+from slipfront.gauges import (
+    Gauge,
+    amplifier,
+    filtered,
+    gauges_of,
+    largest_departure,
+    smooth,
+    weights,
+    worked_on,
+)
 from slipfront.given import in_order, instance, number, shown
 from slipfront.opened import OpenRun
 from slipfront.records import Channel
@@ -73,21 +83,26 @@ class Trace:
         return self.misfit(shift_s) / np.sqrt(2 * np.array(n))
 
 
-def computed_at(run: OpenRun, gauge: Gauge, place: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Times, and xx, yy, xy of a run's probes at a place [3, times]: a probe there, or linear between two of
-    its height that are no farther apart than this."""
-    x_m, y_m = place
+def probes_of(run: OpenRun, is_strain: bool) -> list[Gauge]:
     try:
-        every = gauges_of(run, stress=not gauge.is_strain)
+        return gauges_of(run, stress=not is_strain)
     except CaseError as error:
         told = str(error)
         raise CaseError(told if told.startswith(str(run.folder)) else f"{run.folder}: {told}") from None
+
+
+def computed_at(
+    run: OpenRun, every: list[Gauge], name: str, place: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and xx, yy, xy of a run's probes at the place of a gauge [3, times]: a probe there, or linear
+    between two of its height that are no farther apart than this."""
+    x_m, y_m = place
     probes = [g for g in every if abs(g.y_m - y_m) < SAME_PLACE_M]
     left = max((g for g in probes if g.x_m <= x_m + SAME_PLACE_M), key=lambda g: g.x_m, default=None)
     right = min((g for g in probes if g.x_m >= x_m - SAME_PLACE_M), key=lambda g: g.x_m, default=None)
     if left is None or right is None or right.x_m - left.x_m > abs(y_m) + SAME_PLACE_M:
         raise CaseError(
-            f"{run.folder}: no probe at gauge {gauge.name}, x = {x_m:g}, y = {y_m:g} m, nor two of this "
+            f"{run.folder}: no probe at gauge {name}, x = {x_m:g}, y = {y_m:g} m, nor two of this "
             "height on both sides, no farther apart than it"
         )
     apart_m = right.x_m - left.x_m
@@ -107,19 +122,15 @@ class SlipSensor:
     smoothing_s: float = 0.0
     bandwidth_Hz: float = np.inf
 
-    def prepared(self, *, shift_s: float = 0.0, zero_s: tuple[float, float] | None = None,
-                 low_pass_Hz: float | None = None,
-                 window_s: tuple[float, float] | None = None) -> SlipSensor:  # fmt: skip
+    def prepared(self, **how: Any) -> SlipSensor:
         """As Gauge.prepared."""
-        time_s, values, own_s = worked_on(
-            self.name, self.time_s, self.values, shift_s, zero_s, low_pass_Hz, window_s
-        )
+        time_s, values, own_s = worked_on(self.name, self.time_s, self.values, **how)
         return replace(
             self, time_s=time_s, values=values, smoothing_s=float(np.hypot(self.smoothing_s, own_s))
         )
 
     def peak(self, part: str) -> float:
-        return float(np.abs(self.values[part] - np.median(self.values[part])).max())
+        return largest_departure(self.values[part])
 
 
 def sensor_of(channel: Channel) -> SlipSensor:
@@ -150,11 +161,12 @@ def slip_at(run: OpenRun, sensor: SlipSensor) -> tuple[np.ndarray, np.ndarray]:
 
 def strain_at(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
     """Times, and the components or arms of a gauge by a run's probes [parts, times]."""
-    rows = []
+    rows, probes = [], probes_of(run, gauge.is_strain)
     for part in gauge.parts:
         of_part = weights(part)
         assert of_part is not None  # as the gauge was made
-        time_s, components = computed_at(run, gauge, gauge.places_m.get(part, (gauge.x_m, gauge.y_m)))
+        place = gauge.places_m.get(part, (gauge.x_m, gauge.y_m))
+        time_s, components = computed_at(run, probes, gauge.name, place)
         rows.append(of_part @ components)
     return time_s, np.array(rows)
 
@@ -162,13 +174,11 @@ def strain_at(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
 def trace_of(record: Gauge | SlipSensor, run: OpenRun) -> Trace:
     """The run passes the record's filter and its amplifier, a low-pass of first order."""
     if isinstance(record, Gauge):
-        parts, unit, (run_s, computed) = (
-            record.parts,
-            "1" if record.is_strain else "Pa",
-            strain_at(run, record),
-        )
+        parts, unit = record.parts, "1" if record.is_strain else "Pa"
+        run_s, computed = strain_at(run, record)
     else:
-        parts, unit, (run_s, computed) = ["slip"], "m", slip_at(run, record)
+        parts, unit = ["slip"], "m"
+        run_s, computed = slip_at(run, record)
     if record.smoothing_s > 0:
         run_s, values = filtered(run_s, dict(zip(parts, computed, strict=True)), record.smoothing_s)
         computed = np.array(list(values.values()))
@@ -257,8 +267,8 @@ def compare_traces(
 
     records: gauges, as `read_gauges` and `Event.gauges` have them, and channels of kind slip.
     within_s: the largest shift of the clock that is tried, by default all that leave half of the shorter of
-    record and run; 0: none. The probes pass the filter that
-    `prepared` has put on a record, and its amplifier of bandwidth_Hz.
+    record and run; 0: none. The run passes the filter that `prepared` has put on a record, and its amplifier
+    of bandwidth_Hz.
 
     Returns a Dataset over `trace` and `component`: misfit at the shift common to all, rms of the difference
     over that of the record, both about their means, 0 where they agree, and misfit_error, its standard
@@ -284,7 +294,8 @@ def compare_traces(
     large = [t.name for k, t in enumerate(traces) if np.nanmax(found["misfit"][k]) > 1]
     if large:
         notes.append(f"the run explains nothing of a component of {', '.join(large)}")
-    covered = np.array([len(trace.both(shift)[0]) / len(trace.time_s) for trace in traces])
+    shared = np.array([len(trace.both(shift)[0]) for trace in traces])
+    covered = shared / np.array([len(trace.time_s) for trace in traces])
     if (covered < MOST_UNCOVERED).any():
         notes.append(
             f"the run covers {100 * covered.min():.0f} % of a record: {traces[covered.argmin()].name}"
@@ -294,13 +305,7 @@ def compare_traces(
         {name: (("trace", "component"), values, {"units": "1"}) for name, values in found.items()}
         | {"own_shift_s": ("trace", own, {"units": "s"}), "shift_s": ((), shift, {"units": "s"})}
         | {"covered": ("trace", covered, {"units": "1", "long_name": "share of the record's times"})}
-        | {
-            "n": (
-                (),
-                sum(len(trace.both(shift)[0]) for trace in traces),
-                {"long_name": "times that both have"},
-            )
-        }
+        | {"n": ((), int(shared.sum()), {"long_name": "times that both have"})}
         | of_all(total, "1"),
         {"trace": [t.name for t in traces], "component": parts, "x_m": ("trace", [t.x_m for t in traces])},
         {"notes": notes},
