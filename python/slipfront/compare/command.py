@@ -7,6 +7,7 @@ import argparse
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -105,6 +106,23 @@ class Compared:
         )
 
 
+def add_record_options(parser: argparse.ArgumentParser) -> None:
+    """How records are read and compared."""
+    add = parser.add_argument
+    add("--never-slipped", metavar="TIME", type=mark, help="as of slipfront fronts")
+    add("--within-s", metavar="S", type=float, default=np.inf, help="of traces: largest shift of clocks that "
+        "is tried, by default all that leave half of the shorter of record and run")  # fmt: skip
+    add("--ratio-within", metavar="R", type=float, default=WITHIN, help="of speeds: nodes count whose stress "
+        f"ratio is off by no more, by default {WITHIN}")  # fmt: skip
+    add("--thickness-m", metavar="B", type=float, help="of a force in N: thickness of the bodies")
+    add("--drop-within-s", metavar="S", type=float, help="of a record of the force: time in which it drops")
+    add("--drop-share", metavar="X", type=float, default=SHARE, help="of its range by which it drops, by "
+        f"default {SHARE}")  # fmt: skip
+    add("--skip-events", metavar="N", type=int, default=SKIPPED, help="of cycles: first events left out on "
+        f"both sides, by default {SKIPPED}")  # fmt: skip
+    add_preparation(parser)
+
+
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = command.Parser(
         prog="slipfront compare",
@@ -120,24 +138,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "picture of a single record: .png, .pdf or .svg")  # fmt: skip
     add("--table", metavar="FILE", type=Path, help="CSV table of the misfits, a row per record and run")
     add("--event", metavar="N", type=int, help="of records with several events: this one alone")
-    add("--never-slipped", metavar="TIME", type=mark, help="as of slipfront fronts")
-    add("--within-s", metavar="S", type=float, default=np.inf, help="of traces: largest shift of clocks that "
-        "is tried, by default all that leave half of the shorter of record and run")  # fmt: skip
-    add("--ratio-within", metavar="R", type=float, default=WITHIN, help="of speeds: nodes count whose stress "
-        f"ratio is off by no more, by default {WITHIN}")  # fmt: skip
-    add("--thickness-m", metavar="B", type=float, help="of a force in N: thickness of the bodies")
-    add("--drop-within-s", metavar="S", type=float, help="of a record of the force: time in which it drops")
-    add("--drop-share", metavar="X", type=float, default=SHARE, help="of its range by which it drops, by "
-        f"default {SHARE}")  # fmt: skip
-    add("--skip-events", metavar="N", type=int, default=SKIPPED, help="of cycles: first events left out on "
-        f"both sides, by default {SKIPPED}")  # fmt: skip
-    add_preparation(parser)
+    add_record_options(parser)
     return parser.parse_args(arguments)
 
 
-def require_of_use(options: argparse.Namespace, kinds: set[Kind]) -> None:
-    """Refuses options that count with no record that is given."""
-    plain = vars(parse([str(options.dir), *map(str, options.records)]))
+def require_of_use(options: argparse.Namespace, plain: dict[str, Any], kinds: set[Kind]) -> None:
+    """Refuses options that count with no record that is given. plain: values of options left out."""
     of_use = {name for kind in kinds for name in kind.options}
     for name in sorted({name for kind in KINDS for name in kind.options} - of_use):
         if getattr(options, name) != plain[name]:
@@ -282,7 +288,8 @@ def require_writable(options: argparse.Namespace, n_records: int) -> None:
 def work(options: argparse.Namespace) -> list[str]:
     targets = targets_in(options.dir)
     read, lines = read_all(options)
-    require_of_use(options, {kind for kind, _ in read})
+    plain = vars(parse([str(options.dir), *map(str, options.records)]))
+    require_of_use(options, plain, {kind for kind, _ in read})
     require_writable(options, len(read))
     every = [compared(kind, record, targets, options) for kind, record in read]
     for of in every:

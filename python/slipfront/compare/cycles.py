@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from slipfront.compare.misfit import Estimate, of_all, rms
+from slipfront.compare.misfit import Estimate, Observed, of_all, rms
 from slipfront.cutting import drops
 from slipfront.errors import CaseError
 from slipfront.files import DataError
@@ -143,12 +143,19 @@ def form_of(record: Mapping[str, Any]) -> str:
 
 
 def both_sides(
-    sequence: OpenSequence, record: Mapping[str, ArrayLike], thickness_m: float | None, skip_events: int
+    sequence: OpenSequence,
+    record: Mapping[str, ArrayLike],
+    thickness_m: float | None,
+    skip_events: int,
+    skip_of_record: int | None = None,
 ) -> dict[str, Events]:
     """Of record and sequence the events that count, the shear in the record's form."""
     instance(sequence, OpenSequence, "sequence")
     form = form_of(record)
     skipped = whole(skip_events, "skip_events", least=0)
+    skipped_of_record = (
+        skipped if skip_of_record is None else whole(skip_of_record, "skip_of_record", least=0)
+    )
     if thickness_m is not None:
         number(thickness_m, "thickness_m", above=0, finite=True)
         if form != "force":
@@ -171,9 +178,37 @@ def both_sides(
         raise CaseError("begin_s of the record must ascend")
     of_sequence = events_of_sequence(sequence, form, thickness_m)
     return {
-        "record": counting(of_record, skipped, "the record"),
+        "record": counting(of_record, skipped_of_record, "the record"),
         "sequence": counting(of_sequence, skipped, "the sequence"),
     }
+
+
+def observed_cycles(
+    sequence: OpenSequence,
+    record: Mapping[str, ArrayLike],
+    *,
+    thickness_m: float | None = None,
+    skip_events: int = SKIPPED,
+    skip_of_record: int | None = None,
+) -> Observed:
+    """Means over events, each over that of the record, whose standard errors are of its scatter."""
+    found = compare_cycles(
+        sequence,
+        record,
+        thickness_m=thickness_m,
+        skip_events=skip_events,
+        skip_of_record=skip_of_record,
+    )
+    scale = found["mean_record"].to_numpy()
+    return Observed(
+        "events",
+        "1",
+        [NAMES[str(name)] for name in found["quantity"].values],
+        np.ones(len(scale)),
+        found["mean_error_record"].to_numpy() / scale,
+        found["mean_sequence"].to_numpy() / scale,
+        is_series=False,
+    )
 
 
 def compare_cycles(
@@ -182,19 +217,20 @@ def compare_cycles(
     *,
     thickness_m: float | None = None,
     skip_events: int = SKIPPED,
+    skip_of_record: int | None = None,
 ) -> xr.Dataset:
     """A sequence of slip events beside the events of a record, as statistics over them.
 
     record: begin_s, and of slip_m, duration_s and the shear before, after, drop what is known, this as
     shear over normal force, friction_before, ...; as mean stress over plate.width_m, stress_before_Pa; or as
     force_before_N, ..., which `events_of_force` finds in a record of the force. [events]
-    thickness_m: of the bodies, for forces in N. skip_events: first ones left out on both sides. Events that
-    drop by less than 0.1 of the largest are left out, too.
+    thickness_m: of the bodies, for forces in N. skip_events: first ones left out on both sides, unless
+    skip_of_record says how many of the record's, as of one that was cut out of a longer one. Events that drop by less than 0.1 of the largest are left out, too.
 
     Returns a Dataset over `quantity`: of record and sequence n, mean, its standard error and the standard
     deviation over the events; ratio, that of the means, 1 where they agree, with ratio_error. Of all:
     misfit_of_all, the root of the mean square of ratio - 1, with misfit_of_all_error."""
-    sides = both_sides(sequence, record, thickness_m, skip_events)
+    sides = both_sides(sequence, record, thickness_m, skip_events, skip_of_record)
     form = form_of(record)
     names = [q for q in QUANTITIES if q == "interval_s" or q in sides["record"]]
     data: dict[str, list[float]] = {}

@@ -13,11 +13,19 @@ import xarray as xr
 
 from slipfront import command
 from slipfront.channels import FORCES
-from slipfront.compare.cycles import NAMES, STEMS, both_sides, compare_cycles, events_of_force, name_of
-from slipfront.compare.misfit import Estimate, estimate_of
-from slipfront.compare.onsets import compare_onsets
+from slipfront.compare.cycles import (
+    NAMES,
+    STEMS,
+    both_sides,
+    compare_cycles,
+    events_of_force,
+    name_of,
+    observed_cycles,
+)
+from slipfront.compare.misfit import Estimate, Observed, estimate_of
+from slipfront.compare.onsets import compare_onsets, observed_onsets
 from slipfront.compare.speeds import RATIOS, SPEEDS, compare_speeds, points_of, read_points, runs_of
-from slipfront.compare.traces import SlipSensor, compare_traces, sensor_of, traces_of
+from slipfront.compare.traces import SlipSensor, compare_traces, observed_traces, sensor_of, traces_of
 from slipfront.errors import CaseError, Error
 from slipfront.figures.comparison import draw_cycles, draw_onsets, draw_speeds, draw_traces
 from slipfront.figures.drawing import Drawing
@@ -67,6 +75,7 @@ class Record(NamedTuple):
     label: str
     content: Any
     notes: tuple[str, ...] = ()
+    event: int | None = None
 
 
 class Kind(Protocol):
@@ -81,6 +90,9 @@ class Kind(Protocol):
 
     def read(self, file: Path, options: argparse.Namespace) -> list[Record]: ...
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset: ...
+    def observed(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> list[Observed]:
+        """The same value by value, of a fit, whose options tell what of clocks and amplifiers is known."""
+
     def lines(self, found: xr.Dataset) -> list[str]:
         """The misfit in a line, then its parts."""
 
@@ -115,6 +127,13 @@ def one_run(runs: list[Opened]) -> OpenRun:
     return run
 
 
+def one_sequence(runs: list[Opened]) -> OpenSequence:
+    (sequence,) = runs
+    if not isinstance(sequence, OpenSequence):
+        raise CaseError(f"{sequence.folder}: is a run; cycles are compared with a sequence of events")
+    return sequence
+
+
 class Traces:
     name = "Traces"
     pools = False
@@ -145,10 +164,19 @@ class Traces:
         left_out = sorted(k for k in others if not k.startswith(("strain", "stress", "gamma")))
         if left_out:
             told.append(f"channels of {', '.join(left_out)} are not compared")
-        return Record(f"{file.name}, event {event.number}", traces, tuple(told))
+        return Record(f"{file.name}, event {event.number}", traces, tuple(told), event.number)
 
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset:
         return compare_traces(record, one_run(runs), within_s=options.within_s)
+
+    def observed(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> list[Observed]:
+        return observed_traces(
+            record,
+            one_run(runs),
+            within_s=options.within_s,
+            clock_is_known=options.clock == "run",
+            gain_is_known=options.gain == "known",
+        )
 
     def lines(self, found: xr.Dataset) -> list[str]:
         told = [
@@ -184,6 +212,21 @@ class Speeds:
 
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset:
         return compare_speeds(runs, record, ratio_within=options.ratio_within)
+
+    def observed(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> list[Observed]:
+        found = self.compare(runs, record, options)
+        ratio = found[found.attrs["ratio"]].to_numpy()
+        return [
+            Observed(
+                "speeds",
+                str(found["v_record"].attrs["units"]),
+                [f"{found.attrs['ratio']} = {r:.6g}" for r in ratio],
+                found["v_record"].to_numpy(),
+                np.full(len(ratio), np.nan),
+                found["v_runs"].to_numpy(),
+                is_series=False,
+            )
+        ]
 
     def lines(self, found: xr.Dataset) -> list[str]:
         if not int(found.n):
@@ -232,12 +275,19 @@ class Cycles:
         return [Record(file.name, events)]
 
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset:
-        (sequence,) = runs
-        if not isinstance(sequence, OpenSequence):
-            raise CaseError(f"{sequence.folder}: is a run; cycles are compared with a sequence of events")
-        return compare_cycles(
-            sequence, record, thickness_m=options.thickness_m, skip_events=options.skip_events
-        )
+        return compare_cycles(one_sequence(runs), record, **self.how(options))
+
+    def observed(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> list[Observed]:
+        return [observed_cycles(one_sequence(runs), record, **self.how(options))]
+
+    def how(self, options: argparse.Namespace) -> dict[str, Any]:
+        """Events of a record that were chosen by number all count."""
+        chosen = 0 if getattr(options, "fit_events", None) else None
+        return {
+            "thickness_m": options.thickness_m,
+            "skip_events": options.skip_events,
+            "skip_of_record": chosen,
+        }
 
     def lines(self, found: xr.Dataset) -> list[str]:
         told = [f"misfit {in_percent(estimate_of(found))}"]
@@ -255,9 +305,7 @@ class Cycles:
     def draw(
         self, runs: list[Opened], record: Any, found: xr.Dataset, options: argparse.Namespace
     ) -> Drawing:
-        (sequence,) = runs
-        assert isinstance(sequence, OpenSequence)
-        sides = both_sides(sequence, record, options.thickness_m, options.skip_events)
+        sides = both_sides(one_sequence(runs), record, **self.how(options))
         return draw_cycles(sides, found)
 
 
@@ -273,12 +321,15 @@ class Onsets:
         each = read_each(file, options.never_slipped, options.event)
         return [
             Record(file.name if event is None else f"{file.name}, event {event}", record,
-                   tuple(record.attrs["notes"]))
+                   tuple(record.attrs["notes"]), event)
             for event, record in each.items()
         ]  # fmt: skip
 
     def compare(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> xr.Dataset:
         return compare_onsets(one_run(runs), record)
+
+    def observed(self, runs: list[Opened], record: Any, options: argparse.Namespace) -> list[Observed]:
+        return [observed_onsets(one_run(runs), record, clock_is_known=options.clock == "run")]
 
     def lines(self, found: xr.Dataset) -> list[str]:
         n = f"{int(found.n)} of {found.sizes['place']} places"

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Misfits and their standard errors."""
+"""Misfits and their standard errors; what a run observes of a record, value by value."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,21 @@ import xarray as xr
 
 SE_OF_MEDIAN = 1.2533  # over that of the mean, of normal values
 SIGMA_OF_MAD = 1.4826
+
+
+@dataclass(frozen=True)
+class Observed:
+    """Values of a record that share a unit, an unknown constant and a quality, beside those of a run."""
+
+    name: str
+    unit: str  # of CF
+    labels: list[str]  # of the values
+    measured: np.ndarray  # NaN where a place never slips
+    error: np.ndarray  # standard errors; NaN where they are not known
+    computed: np.ndarray  # NaN where the run has none
+    has_offset: bool = False  # as of a clock that does not know when the rupture began, or of a gauge's zero
+    has_gain: bool = False  # whether an amplifier of unknown gain stands between both
+    is_series: bool = True  # along x or over time, so that neighbours may be alike
 
 
 class Estimate(NamedTuple):

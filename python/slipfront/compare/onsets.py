@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from slipfront.compare.misfit import Estimate, of_all
+from slipfront.compare.misfit import Estimate, Observed, of_all
 from slipfront.errors import CaseError
 from slipfront.given import column, holds, instance
 from slipfront.measures import Arrays
@@ -33,6 +33,35 @@ def places_in_words(x_m: np.ndarray) -> str:
     return f"{len(x_m)} places of the record, x = {x_m[0]:.4g} to {x_m[-1]:.4g} m"
 
 
+def record_of(record: Arrays) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """x_m, onset_s and error_s of one event, this where it is known. [places]"""
+    x_m, record_s = column(record, "record", "x_m"), column(record, "record", "onset_s")
+    has_errors = holds(record, "record", "error_s")
+    error_s = column(record, "record", "error_s", finite=True) if has_errors else None
+    if len(x_m) != len(record_s) or (error_s is not None and len(error_s) != len(x_m)):
+        raise CaseError("x_m, onset_s and error_s of the record must be of one length")
+    if error_s is not None and not (error_s > 0).all():
+        raise CaseError("error_s of the record must be above 0")
+    if "event" in record and len(np.unique(column(record, "record", "event"))) > 1:
+        raise CaseError("the record has several events; take one, as by read_onsets(file, event=...)")
+    return x_m, record_s, error_s
+
+
+def observed_onsets(run: OpenRun, record: Arrays, *, clock_is_known: bool = False) -> Observed:
+    """Onsets in s value by value. clock_is_known: whether the record's clock begins with the run's."""
+    x_m, record_s, error_s = record_of(record)
+    along = np.argsort(x_m, kind="stable")
+    return Observed(
+        "onsets",
+        "s",
+        [f"x = {x:.6g} m" for x in x_m[along]],
+        record_s[along],
+        np.full(len(x_m), np.nan) if error_s is None else error_s[along],
+        onsets_at(run, x_m[along]),
+        has_offset=not clock_is_known,
+    )
+
+
 def compare_onsets(run: OpenRun, record: Arrays) -> xr.Dataset:
     """The onsets of a run's fronts beside those of one event, as `read_onsets` has them: x_m, onset_s, NaN
     where a place never slips, and perhaps error_s, standard errors, which weight them. [places]
@@ -45,15 +74,9 @@ def compare_onsets(run: OpenRun, record: Arrays) -> xr.Dataset:
     _error, its standard error by the scatter. reduced_chi2, where the record has errors: 1 where these
     explain the residuals. `notes` names places that only one of both has."""
     instance(run, OpenRun, "run")
-    x_m, record_s = column(record, "record", "x_m"), column(record, "record", "onset_s")
-    has_errors = holds(record, "record", "error_s")
-    error_s = column(record, "record", "error_s", finite=True) if has_errors else np.ones(len(x_m))
-    if not len(x_m) == len(record_s) == len(error_s):
-        raise CaseError("x_m, onset_s and error_s of the record must be of one length")
-    if not (error_s > 0).all():
-        raise CaseError("error_s of the record must be above 0")
-    if "event" in record and len(np.unique(column(record, "record", "event"))) > 1:
-        raise CaseError("the record has several events; take one, as by read_onsets(file, event=...)")
+    x_m, record_s, known_error_s = record_of(record)
+    has_errors = known_error_s is not None
+    error_s = np.ones(len(x_m)) if known_error_s is None else known_error_s
     run_s = onsets_at(run, x_m)
     both = np.isfinite(record_s) & np.isfinite(run_s)
     notes = [

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import minimize_scalar
 
-from slipfront.compare.misfit import of_all, rms
+from slipfront.compare.misfit import Observed, of_all, rms
 from slipfront.errors import CaseError
 from slipfront.gauges import (
     Gauge,
@@ -258,6 +258,44 @@ def best_shift(traces: list[Trace], within_s: float) -> float:
     ends = shifts[max(k - 1, 0)], shifts[min(k + 1, len(shifts) - 1)]
     refined = minimize_scalar(cost, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x
     return float(min((shifts[k], refined), key=cost))
+
+
+FITTED_TIMES = 200  # of a trace, value by value
+
+
+def observed_traces(
+    records: Iterable[Gauge | SlipSensor | Channel],
+    run: OpenRun,
+    *,
+    within_s: float = np.inf,
+    clock_is_known: bool = False,
+    gain_is_known: bool = True,
+) -> list[Observed]:
+    """Components of traces value by value, at the shift common to all; before the run begins its first value,
+    beyond its end its last one.
+
+    clock_is_known: whether the records' clock begins with the run's; gain_is_known: whether amplitudes count.
+    """
+    traces, _ = traces_of(records, run)
+    shift_s = 0.0 if clock_is_known else best_shift(traces, within_s)
+    found = []
+    for trace in traces:
+        each = -(-len(trace.time_s) // FITTED_TIMES)
+        time_s = trace.time_s[::each]
+        for part, measured, computed in zip(trace.parts, trace.measured, trace.computed, strict=True):
+            found.append(
+                Observed(
+                    f"{trace.name} {part}" if part != "slip" else trace.name,
+                    trace.unit,
+                    [f"t = {t:.6g} s" for t in time_s],
+                    measured[::each],
+                    np.full(len(time_s), np.nan),
+                    np.interp(time_s + shift_s, trace.run_s, computed),
+                    has_offset=True,
+                    has_gain=not gain_is_known,
+                )
+            )
+    return found
 
 
 def compare_traces(

@@ -9,7 +9,7 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
@@ -53,8 +53,8 @@ class Needs:
         )
 
 
-def require_valid(sweep: Sweep, program: Path, points: list[Point], quiet: bool) -> None:
-    """Refuses the first point that the program refuses; none is run before all are checked."""
+def refused(sweep: Sweep, program: Path, points: list[Point], quiet: bool) -> Iterator[tuple[Point, str]]:
+    """Points that the program refuses, each with its reason."""
     common = sweep.settings()
 
     def check(point: Point) -> str | None:
@@ -67,10 +67,19 @@ def require_valid(sweep: Sweep, program: Path, points: list[Point], quiet: bool)
     hidden = True if quiet else None  # None: where there is no terminal
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         answers = tqdm(pool.map(check, points), "checked", len(points), leave=False, disable=hidden)
-        for point, problem in zip(points, answers, strict=True):
-            if problem is not None:
-                pool.shutdown(cancel_futures=True)
-                raise DataError(told_of(sweep, point, problem))
+        try:
+            for point, problem in zip(points, answers, strict=True):
+                if problem is not None:
+                    yield point, problem
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def require_valid(sweep: Sweep, program: Path, points: list[Point], quiet: bool) -> None:
+    """Refuses the first point that the program refuses; none is run before all are checked."""
+    with closing(refused(sweep, program, points, quiet)) as found:
+        for point, problem in found:
+            raise DataError(told_of(sweep, point, problem))
 
 
 def told_of(sweep: Sweep, point: Point, problem: str) -> str:
@@ -180,6 +189,8 @@ class How:
     share: tuple[int, int] | None = None  # the k-th of n, from 1
     quiet: bool = False
     say: Callable[[str], None] = print
+    is_checked: bool = False  # whether points are known to be valid, and to have room
+    has_tables: bool = True
 
     def tell(self, line: str) -> None:
         if not self.quiet:
@@ -259,7 +270,7 @@ def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
     Raises DataError for what is refused; points that fail are told by the result."""
     program, identity = places.begun(sweep, folder)
     missing = missing_of(sweep, folder, how)
-    if missing:
+    if missing and not how.is_checked:
         check(sweep, folder, program, missing, how)
     with places.held(folder, shared=how.share is not None):
         places.write_definition(folder, sweep, identity)
@@ -269,7 +280,7 @@ def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
         tasks = [Task(str(program), case, settings, where, stop, p, sweep.keep) for p in missing]
         ended, is_interrupted = run_missing(folder, tasks, how)
         table = None
-        if how.share is None and not is_interrupted:
+        if how.has_tables and how.share is None and not is_interrupted:
             table = collect(folder, sweep, identity["program"])
             if (table.status == DONE).all():
                 shutil.rmtree(folder / places.STATES, ignore_errors=True)

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`slipfront fit CASE RECORDS... --free KEY=FROM:TO[:log] ... -o DIR`: which values explain the records."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from slipfront import command
+from slipfront.compare.command import (
+    OPTIONS,
+    add_record_options,
+    in_words,
+    read_all,
+    require_of_use,
+)
+from slipfront.compare.kinds import Cycles, Kind, Record
+from slipfront.files import DataError, exists, is_folder, read_json_table
+from slipfront.fit.fitting import RUNS, Asked, Fitting
+from slipfront.fit.outcome import outcome_of, write_results
+from slipfront.fit.space import Space, space_of
+from slipfront.sweep.command import once_each
+from slipfront.sweep.engine import default_workers
+from slipfront.sweep.folder import write_whole
+from slipfront.sweep.points import value_of
+from slipfront.sweep.sweeping import How, array_script
+
+NAME = "slipfront fit"
+REQUEST = "request.json"
+FIRST_A_KEY, BATCH_A_KEY, MOST_A_KEY = 16, 4, 100  # runs
+DESCRIPTION = """Finds which values of a case's keys explain an experiment's records: runs at points over the
+ranges, then at those that the records leave, until what is left is known. Results in DIR: intervals,
+correlations, what is not determined, the best case, a page. docs/fit.md"""
+
+
+def parse(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = command.Parser(prog=NAME, description=DESCRIPTION)
+    add = parser.add_argument
+    several: dict[str, Any] = {"action": "append", "default": []}
+    add("case", metavar="CASE", type=Path, nargs="?", help="a case file")
+    add("records", metavar="RECORDS", type=Path, nargs="*", help="as of slipfront compare: CSV, records.nc")
+    add("-o", "--output", metavar="DIR", type=Path, help="folder of the fit; one that was begun goes on")
+    add("--restart", metavar="DIR", type=Path, help="go on with the fit in this folder")
+    add("--free", metavar="KEY=FROM:TO[:log]", help="a key and its range; repeat", **several)
+    add("--set", metavar="KEY=VALUE", help="set another key of the case; repeat", **several)
+    add("--clock", choices=("free", "run"), default="free", help="whether the records' clock is free, or time "
+        "0 is that of the run (default: free)")  # fmt: skip
+    add("--gain", choices=("known", "free"), default="known", help="of traces: whether amplitudes count "
+        "(default: known)")  # fmt: skip
+    add("--fit-events", metavar="N,M-K", type=events, help="of records with several events, or of a table of "
+        "events: those that are fitted (default: all)")  # fmt: skip
+    add("--predict-events", metavar="N,M-K", type=events, help="those that are predicted, with their misfit")
+    add("--first", metavar="N", type=int, help=f"runs over the whole ranges (default: {FIRST_A_KEY} a key)")
+    add("--most", metavar="N", type=int, help=f"runs at most (default: {MOST_A_KEY} a key)")
+    add("--workers", metavar="N", type=int, help="runs at a time, one thread each (default: processors)")
+    add("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers see DIR, not local ones")
+    add("--slurm", metavar="FILE", type=Path, help="write a script for an array of Slurm jobs, which does the "
+        "first runs; run nothing")  # fmt: skip
+    add("-q", "--quiet", action="store_true", help="print nothing but errors")
+    add_record_options(parser)
+    return parser.parse_args(arguments)
+
+
+def events(text: str) -> tuple[int, ...]:
+    """Numbers and ranges of them."""
+    found: list[int] = []
+    for part in text.split(","):
+        first, _, last = part.partition("-")
+        if not first.strip().isdigit() or (last and not last.strip().isdigit()):
+            raise argparse.ArgumentTypeError(f"{text}: is not N,M-K")
+        found += range(int(first), int(last or first) + 1)
+    if not found or min(found) < 1 or len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f"{text}: events are numbered from 1 and named once")
+    return tuple(found)
+
+
+def rows_of(record: Record, wanted: tuple[int, ...]) -> Record:
+    """Rows of a table of events."""
+    n = len(record.content["begin_s"])
+    if max(wanted) > n:
+        raise DataError(f"{record.label}: has {n} events; there is no event {max(wanted)}")
+    at = np.array(sorted(wanted)) - 1
+    if (np.diff(at) != 1).any():
+        raise DataError(f"{record.label}: events of a table follow each other: name them as N-M")
+    content = {name: values[at] for name, values in record.content.items()}
+    return record._replace(label=f"{record.label}, events {at[0] + 1}-{at[-1] + 1}", content=content)
+
+
+def asked_of(options: argparse.Namespace, read: list[tuple[Kind, Record]]) -> Asked:
+    """Records by what is to be done with their events."""
+    if not options.fit_events and options.predict_events:
+        raise DataError("--predict-events needs --fit-events, those that are fitted")
+    if both := {*(options.fit_events or ())} & {*(options.predict_events or ())}:
+        raise DataError(f"event {min(both)} is to be fitted and to be predicted; name it once")
+    if not options.fit_events:
+        return Asked(read, [True] * len(read), options)
+    chosen: list[tuple[Kind, Record]] = []
+    is_fitted: list[bool] = []
+    for wanted, fitted in ((options.fit_events, True), (options.predict_events, False)):
+        found = []
+        for kind, record in read:
+            if wanted and isinstance(kind, Cycles):
+                found.append((kind, rows_of(record, wanted)))
+            elif wanted and record.event in wanted:
+                found.append((kind, record))
+            elif record.event is None and fitted and not isinstance(kind, Cycles):
+                found.append((kind, record))  # a record of one event
+        if wanted and not any(record.event in wanted or isinstance(kind, Cycles) for kind, record in found):
+            raise DataError(f"no record has an event {wanted[0]}")
+        chosen += found
+        is_fitted += [fitted] * len(found)
+    return Asked(chosen, is_fitted, options)
+
+
+def require_sound(options: argparse.Namespace) -> None:
+    if options.case is None or not options.records or options.output is None or not options.free:
+        raise DataError(f"CASE, RECORDS, --free and --output DIR, or --restart DIR; see {NAME} --help")
+    if not exists(options.case):
+        raise DataError(f"{options.case}: No such file or directory")
+    for name in ("first", "most", "workers"):
+        if getattr(options, name) is not None and getattr(options, name) < 1:
+            raise DataError(f"--{name} is a whole number from 1 on")
+    folder = options.output
+    if is_folder(folder) and any(folder.iterdir()) and not exists(folder / REQUEST):
+        raise DataError(f"{folder}: holds something, and no fit; choose another folder")
+
+
+def restarted(folder: Path) -> argparse.Namespace:
+    file = folder / REQUEST
+    if not exists(file):
+        raise DataError(f"{folder}: holds no fit")
+    found = read_json_table(file).get("arguments")
+    if not isinstance(found, list) or not all(isinstance(one, str) for one in found):
+        raise DataError(f"{file}: not the request of a fit, or of another version")
+    options = parse(found)
+    options.output = folder
+    return options
+
+
+def write_request(options: argparse.Namespace, arguments: Sequence[str]) -> None:
+    """The command line, with whole paths."""
+    files = {str(path): str(path.resolve()) for path in (options.case, *options.records)}
+    told = [files.get(argument, argument) for argument in arguments]
+    options.output.mkdir(parents=True, exist_ok=True)
+    write_whole(options.output / REQUEST, json.dumps({"arguments": told}, indent=2) + "\n")
+
+
+def fitting_of(options: argparse.Namespace, space: Space, asked: Asked, how: How) -> Fitting:
+    settings = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
+    if both := settings.keys() & space.keys:
+        raise DataError(f"{min(both)} is both free and set")
+    most = options.most or MOST_A_KEY * space.n
+    return Fitting(options.case, settings, space, asked, options.output, how, most)
+
+
+def work(options: argparse.Namespace, arguments: Sequence[str], output: command.Output) -> list[str]:
+    if options.restart is not None:
+        if options.case or options.output or options.free:
+            raise DataError("--restart DIR goes on with the fit in DIR: no CASE, --output or --free")
+        options = restarted(options.restart)
+    require_sound(options)
+    space = space_of(once_each(options.free, "--free"))
+    options.event = None
+    read, lines = read_all(options)
+    plain = vars(parse([str(options.case), *map(str, options.records)]))
+    require_of_use(options, plain | {"event": None}, {kind for kind, _ in read})
+    asked = asked_of(options, read)
+    lines += [f"{record.label}: {in_words(note)}" for _, record in asked.records for note in record.notes]
+    workers = options.workers or default_workers()
+    how = How(workers, options.scheduler, None, options.quiet, output.say, has_tables=False)
+    fitting = fitting_of(options, space, asked, how)
+    first = options.first or FIRST_A_KEY * space.n
+    if options.restart is None:
+        write_request(options, arguments)
+    if options.slurm is not None:
+        points = space.points(space.sobol(first))
+        return array_script(fitting.sweep(points), options.output / RUNS, options.slurm)
+    for line in lines:
+        how.tell(line)
+    result = fitting.carry_out(first, BATCH_A_KEY * space.n, how.tell)
+    outcome = outcome_of(options, asked, fitting, result)
+    write_results(options.output, outcome, result)
+    return [] if options.quiet else [*outcome.lines, f"results: {options.output}"]
+
+
+def main(arguments: list[str]) -> int:
+    # Several of its small matrices at a time are slower than one.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    options = parse(arguments)
+    output = command.Output()
+    return command.run(
+        NAME, lambda: command.by_options(lambda: work(options, arguments, output), OPTIONS), output
+    )

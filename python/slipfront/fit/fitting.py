@@ -1,0 +1,396 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From the first runs to the posterior: Sobol's points over the ranges; then, round by round, a process over what
+the runs computed, samples of the posterior that it gives, and runs at some of them, until these agree with what
+it expected. At last least squares of runs alone, from the most probable place."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from slipfront.compare.kinds import Kind, Record
+from slipfront.compare.misfit import Observed
+from slipfront.errors import Error
+from slipfront.files import DataError, exists
+from slipfront.fit.emulator import Emulator
+from slipfront.fit.likelihood import Part, alike_of, part_of
+from slipfront.fit.posterior import sampled
+from slipfront.fit.space import Space, spread_out
+from slipfront.opened_sequence import opened
+from slipfront.program import find_program
+from slipfront.sweep import folder as places
+from slipfront.sweep.definition import Sweep
+from slipfront.sweep.points import Point, text_of
+from slipfront.sweep.sweeping import How, carry_out, refused
+
+RUNS = "runs"
+PLAUSIBLE = 20.0  # below the best logarithm of the likelihood, within which runs train the emulator
+MOST_TRAINING = 300
+MARGIN = 0.1  # of the emulator's box
+AGREE = 0.4  # root mean square of what is expected of log L less what runs have
+STEPS, LAST_STEPS = 300, 1500
+BEYOND = 0.02  # share of samples at the end of the emulator's box that the posterior leaves
+NEAR = 6.0  # below the best, within which these are compared
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Records, which of them are fitted, and how they are read."""
+
+    records: list[tuple[Kind, Record]]
+    is_fitted: list[bool]
+    options: argparse.Namespace
+
+
+@dataclass
+class Ran:
+    """A point with what its run makes of each record's parts, or why there is no run, or nothing to compare."""
+
+    point: Point
+    share: np.ndarray
+    observed: list[list[Observed]] = field(default_factory=list)  # [records][parts]
+    why_not: str = ""
+
+    @property
+    def n_mismatched(self) -> int:
+        """Places at which one of record and run has a front and the other has none."""
+        return sum(
+            int((np.isfinite(of.measured) != np.isfinite(of.computed)).sum())
+            for parts in self.observed
+            for of in parts
+        )
+
+
+@dataclass(frozen=True)
+class Check:
+    """Least squares of runs alone from the most probable place on."""
+
+    share: np.ndarray  # of the best of its runs
+    gain: float  # of log L over where it began
+    deviations: np.ndarray  # of the keys' shares, by the runs' derivatives
+    moved: np.ndarray  # over the posterior's standard deviations
+
+
+@dataclass(frozen=True)
+class Result:
+    space: Space
+    parts: list[Part]
+    ran: list[Ran]
+    log_likelihood: np.ndarray  # of ran, -inf without a comparison
+    samples: np.ndarray  # shares
+    n_independent: float
+    disagreement: float  # root mean square, log L expected less that of runs, in the last round
+    check: Check | None
+    rounds: int
+    at_edge: list[str]
+    notes: list[str]
+
+    @property
+    def best(self) -> Ran:
+        return self.ran[int(np.argmax(self.log_likelihood))]
+
+
+class Fitting:
+    """A fit in its folder. Runs that are there are taken as they are."""
+
+    def __init__(
+        self,
+        case: Path,
+        settings: dict[str, Any],
+        space: Space,
+        asked: Asked,
+        folder: Path,
+        how: How,
+        most_runs: int,
+    ) -> None:
+        self.case, self.settings, self.space, self.asked = case, settings, space, asked
+        self.folder, self.how, self.most_runs = folder, how, most_runs
+        self.ran: list[Ran] = []
+        self.parts: list[Part] = []
+        self.rng = np.random.default_rng(0)
+
+    # Runs.
+
+    def sweep(self, points: Sequence[Point]) -> Sweep:
+        vary = {key: [point.values[key] for point in points] for key in self.space.keys}
+        return Sweep(self.case, vary, self.settings, combine="zip")
+
+    def add(self, shares: np.ndarray) -> None:
+        self.add_points(self.space.points(shares), shares)
+
+    def add_points(self, wanted: list[Point], shares: np.ndarray) -> None:
+        """Runs points that are new, if the program accepts them, and compares them with the records."""
+        known = {ran.point.words for ran in self.ran}
+        every = {point.words: (point, share) for point, share in zip(wanted, shares, strict=True)}
+        fresh = {words: of for words, of in every.items() if words not in known}
+        if not fresh:
+            return
+        points = [point for point, _ in fresh.values()]
+        all_runs = [ran.point for ran in self.ran if not ran.why_not.startswith("refused")]
+        to_check = [p for p in points if not places.is_done(self.folder / RUNS, p)]
+        with closing(refused(self.sweep(points), find_program(), to_check, True)) as found:
+            why_not = {point.name: told for point, told in found}
+        if len(why_not) == len(points) and not self.ran:
+            raise DataError(f"all points are refused; {points[0].words}: {why_not[points[0].name]}")
+        valid = [point for point in points if point.name not in why_not]
+        if valid:
+            sweep = self.sweep([*all_runs, *valid])
+            finished = carry_out(sweep, self.folder / RUNS, replace(self.how, is_checked=bool(self.ran)))
+            if finished.is_interrupted:
+                raise KeyboardInterrupt("interrupted; the same command goes on")
+        for point, share in fresh.values():
+            ran = Ran(point, share)
+            if point.name in why_not:
+                ran.why_not = f"refused: {why_not[point.name]}"
+            else:
+                self.observe(ran)
+            self.ran.append(ran)
+
+    def observe(self, ran: Ran) -> None:
+        folder = self.folder / RUNS
+        place = places.place_of(folder, ran.point)
+        wrong = places.what_is_wrong(place, ran.point)
+        if wrong is not None:
+            ran.why_not = places.failure_of(folder, ran.point) or wrong
+            return
+        run = opened(place)
+        try:
+            ran.observed = [
+                kind.observed([run], record.content, self.asked.options)
+                for kind, record in self.asked.records
+            ]
+        except Error as error:
+            ran.why_not = str(error)
+
+    def resume(self) -> None:
+        """Takes the runs of an earlier call in this folder that are within the ranges."""
+        folder, keys = self.folder / RUNS, self.space.keys
+        if not exists(folder / places.DEFINITION):
+            return
+        points = places.read_definition(folder).points()
+        if points and list(points[0].values) == keys:
+            values = np.array([[float(p.values[key]) for key in keys] for p in points])  # type: ignore[arg-type]
+            self.add_points(points, self.space.shares(values))
+
+    # Likelihood.
+
+    @property
+    def usable(self) -> list[Ran]:
+        """Runs that have fronts where the record has them, as far as any has."""
+        compared = [ran for ran in self.ran if not ran.why_not]
+        least = min((ran.n_mismatched for ran in compared), default=0)
+        return [ran for ran in compared if ran.n_mismatched == least]
+
+    def find_parts(self) -> None:
+        """Parts of the fitted records, of the values that all usable runs have, with c of the best run."""
+        usable, self.parts = self.usable, []
+        for k, (_, record) in enumerate(self.asked.records):
+            for j, of in enumerate(usable[0].observed[k] if self.asked.is_fitted[k] else []):
+                rows = np.array([ran.observed[k][j].computed for ran in usable])
+                used = np.isfinite(of.measured) & np.isfinite(rows).all(axis=0)
+                if used.sum() > of.has_offset + of.has_gain:
+                    self.parts.append(part_of(of, f"{record.label}, {of.name}", (k, j), used))
+        if not self.parts:
+            raise DataError("no value of the records is there in the runs as well: nothing to fit")
+        # Where errors are not known, and what is alike, follow from the best run, and this from them.
+        computed = self.computed(usable)
+        for _ in range(2):
+            best = int(np.argmax(self.of_runs(computed)))
+            found = []
+            for part, rows in zip(self.parts, computed, strict=True):
+                if not part.has_error:
+                    left = part.left(part.reduced(part.measured), part.reduced(rows[best]))
+                    rms = float(np.sqrt((left**2).mean())) * part.sigma
+                    part = replace(part, sigma=np.maximum(rms, 1e-3 * float(np.ptp(part.measured)) or 1e-300))
+                found.append(replace(part, alike=alike_of(part, rows[best])))
+            self.parts = found
+
+    def computed(self, ran: Sequence[Ran]) -> list[np.ndarray]:
+        """What runs make of the parts. [runs, values of the part]"""
+        return [np.array([one.observed[k][j].computed[part.used] for one in ran])
+                for part in self.parts for k, j in [part.place]]  # fmt: skip
+
+    def of_runs(self, computed: Sequence[np.ndarray]) -> np.ndarray:
+        """log L of runs; -inf where one lacks a value. [runs]"""
+        total = np.zeros(len(computed[0]))
+        for part, rows in zip(self.parts, computed, strict=True):
+            left = part.left(part.reduced(part.measured), part.reduced(rows))
+            total += part.log_likelihood((left**2).sum(axis=1), part.least_scale**2)
+        return np.where(np.isfinite(total), total, -np.inf)
+
+    # Rounds.
+
+    def emulator(self) -> tuple[Emulator, np.ndarray, np.ndarray]:
+        """With the shares of usable runs and their log L."""
+        self.find_parts()
+        usable = self.usable
+        computed = self.computed(usable)
+        shares = np.array([ran.share for ran in usable])
+        logs = self.of_runs(computed)
+        n = self.space.n
+        least = 3 * (n + 1) * (n + 2) // 2
+        order = np.argsort(-logs)
+        chosen = order[: max(least, int((logs > logs.max() - PLAUSIBLE).sum()))][:MOST_TRAINING]
+        low, high = shares[chosen].min(axis=0), shares[chosen].max(axis=0)
+        inside = ((shares >= low) & (shares <= high)).all(axis=1)
+        extra = [k for k in order if inside[k] and k not in set(chosen)][: MOST_TRAINING - len(chosen)]
+        training = np.array([*chosen, *extra], dtype=int)
+        used = {id(ran) for ran in usable}
+        lost = np.array([ran.share for ran in self.ran if id(ran) not in used]).reshape(-1, n)
+        made = Emulator(self.parts, shares[training], [rows[training] for rows in computed], lost, MARGIN)
+        return made, shares, logs
+
+    def sample(self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, steps: int, heat: float = 1.0
+               ) -> tuple[np.ndarray, float]:  # fmt: skip
+        start = shares[np.argsort(-logs)[: max(4 * self.space.n, 8)]]
+        start = start[np.isfinite(emulator.log_likelihood(start))]
+        return sampled(lambda s: emulator.log_likelihood(s) / heat, start, steps, self.rng)
+
+    def expectation(self, expected: np.ndarray, first: int) -> float:
+        """Root mean square of expected log L of the runs from one on, less theirs, about the mean."""
+        fresh = self.ran[first:]
+        usable = self.usable
+        logs = self.of_runs(self.computed(usable))
+        by_run = {id(ran): float(log) for ran, log in zip(usable, logs, strict=True)}
+        pairs = [(e, by_run[id(ran)]) for e, ran in zip(expected, fresh, strict=True) if id(ran) in by_run]
+        pairs = [(e, log) for e, log in pairs if log > logs.max() - NEAR]
+        if len(pairs) < max(2, len(fresh) // 3):
+            return np.inf
+        return float(np.sqrt(np.mean([(e - log) ** 2 for e, log in pairs])))
+
+    def carry_out(self, first: int, batch: int, tell: Callable[[str], None]) -> Result:
+        self.resume()
+        self.add(self.space.sobol(first))
+        least = self.space.n + 2
+        if len(self.usable) < least:
+            reasons = [ran.why_not for ran in self.ran if ran.why_not]
+            told = f": {reasons[0]}" if reasons else ""
+            raise DataError(
+                f"only {len(self.usable)} of {len(self.ran)} runs can be compared with the records, {least} are "
+                f"needed{told}; choose narrower ranges or more first runs"
+            )
+        rounds, disagreement = 0, np.inf
+        while True:
+            emulator, shares, logs = self.emulator()
+            off = (
+                f"; log L of the last ones was expected to {disagreement:.2g}"
+                if disagreement < np.inf
+                else ""
+            )
+            tell(f"round {rounds}: {len(self.ran)} runs, {len(shares)} of them like the record{off}")
+            if disagreement < AGREE or len(self.ran) + batch > self.most_runs:
+                break
+            rounds += 1
+            cold, _ = self.sample(emulator, shares, logs, STEPS)
+            known = np.array([ran.share for ran in self.ran])
+            some = cold[self.rng.integers(len(cold), size=400)]
+            likely = some[np.argmax(emulator.log_likelihood(some))][None]
+            others = np.concatenate([known, likely])
+            chosen = np.concatenate([likely, spread_out(some, others, batch - 1)])
+            hot, _ = self.sample(emulator, shares, logs, STEPS // 2, heat=4.0)
+            beyond = spread_out(hot[self.rng.integers(len(hot), size=400)],
+                                np.concatenate([known, chosen]), batch // 2)  # fmt: skip
+            expected = emulator.log_likelihood(chosen)
+            n_before = len(self.ran)
+            self.add(chosen)
+            fresh = len(self.ran) - n_before
+            disagreement = self.expectation(expected[:fresh], n_before) if fresh == len(chosen) else np.inf
+            self.add(beyond)
+        samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
+        check = self.least_squares(emulator, samples, tell)
+        if check is not None and check.gain > 1.0:
+            emulator, shares, logs = self.emulator()
+            samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
+        return self.result(emulator, samples, n_independent, disagreement, check, rounds)
+
+    def least_squares(
+        self, emulator: Emulator, samples: np.ndarray, tell: Callable[[str], None]
+    ) -> Check | None:
+        """Gauss's and Newton's step by central differences of runs."""
+        some = samples[self.rng.integers(len(samples), size=500)]
+        start = some[int(np.argmax(emulator.log_likelihood(some)))]
+        deviation = np.maximum(samples.std(axis=0), 1e-4)
+        steps = np.diag(np.minimum(deviation, 0.5 * np.maximum(np.minimum(start, 1 - start), 1e-3)))
+        tried = np.concatenate([start[None], start + steps, start - steps])
+        tell(f"least squares: {len(tried) + 1} runs")
+        logs, left = self.logs_and_residuals(tried)
+        n, known = self.space.n, np.isfinite(logs)
+        if not known[0] or not (known[1 : n + 1] | known[n + 1 :]).all():
+            return None
+        after, before = (np.where(known[k : k + n], np.arange(k, k + n), 0) for k in (1, n + 1))
+        apart = np.array(
+            [tried[i, k] - tried[j, k] for k, (i, j) in enumerate(zip(after, before, strict=True))]
+        )
+        slopes = (left[after] - left[before]) / apart[:, None]
+        normal = slopes @ slopes.T + np.diag(1e-9 / deviation**2)
+        at = np.clip(start - np.linalg.solve(normal, slopes @ left[0]), 0, 1)
+        of_step, _ = self.logs_and_residuals(at[None])
+        places, values = np.concatenate([tried, at[None]]), np.concatenate([logs, of_step])
+        best = int(np.argmax(values))
+        deviations = np.sqrt(np.diag(np.linalg.inv(normal)))
+        return Check(places[best], float(values[best] - logs[0]), deviations,
+                     (places[best] - start) / deviation)  # fmt: skip
+
+    def logs_and_residuals(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """log L, -inf of runs without a comparison, and residuals over their most probable errors at the first.
+        [points], [points, values]"""
+        self.add(shares)
+        by_words = {ran.point.words: ran for ran in self.ran if not ran.why_not}
+        at = [by_words.get(point.words) for point in self.space.points(shares)]
+        known = [k for k, ran in enumerate(at) if ran is not None]
+        logs, left = (
+            np.full(len(shares), -np.inf),
+            np.full((len(shares), sum(p.n for p in self.parts)), np.nan),
+        )
+        if known:
+            computed = self.computed([ran for ran in at if ran is not None])
+            logs[known] = self.of_runs(computed)
+            rows = []
+            for part, of in zip(self.parts, computed, strict=True):
+                of_part = part.left(part.reduced(part.measured), part.reduced(of))
+                scale = part.scale(float((of_part[0] ** 2).sum()))
+                rows.append(of_part / scale / np.sqrt(part.alike))
+            left[known] = np.concatenate(rows, axis=1)
+        return logs, left
+
+    def result(self, emulator: Emulator, samples: np.ndarray, n_independent: float, disagreement: float,
+               check: Check | None, rounds: int) -> Result:  # fmt: skip
+        usable = self.usable
+        logs = self.of_runs(self.computed(usable))
+        by_run = {id(ran): float(log) for ran, log in zip(usable, logs, strict=True)}
+        of_ran = np.array([by_run.get(id(ran), -np.inf) for ran in self.ran])
+        side = 0.02 * (emulator.high - emulator.low)
+        below = (samples < emulator.low + side).mean(axis=0) * (emulator.low > 0)
+        above = (samples > emulator.high - side).mean(axis=0) * (emulator.high < 1)
+        at_edge = [key for key, share in zip(self.space.keys, np.maximum(below, above), strict=True)
+                   if share > BEYOND]  # fmt: skip
+        return Result(self.space, self.parts, self.ran, of_ran, samples, n_independent, disagreement, check,
+                      rounds, at_edge, self.notes())  # fmt: skip
+
+    def notes(self) -> list[str]:
+        """Runs that failed or have no front where the record has one, and places that no run explains."""
+        told = []
+        failed = [ran for ran in self.ran if ran.why_not]
+        if failed:
+            told.append(f"{len(failed)} of {len(self.ran)} runs are left out; the first, at "
+                        f"{failed[0].point.words}: {failed[0].why_not}")  # fmt: skip
+        usable = self.usable
+        unlike = len(self.ran) - len(failed) - len(usable)
+        if unlike:
+            told.append(f"{unlike} runs have fronts at other places of the record than the rest: their points "
+                        "are ruled out")  # fmt: skip
+        if usable and usable[0].n_mismatched:
+            told.append(f"{usable[0].n_mismatched} places of the record have no front in any of the runs, or "
+                        "one where the record has none: they do not count")  # fmt: skip
+        return told
+
+
+def words(share: np.ndarray, space: Space) -> str:
+    (point,) = space.points(share[None])
+    return ", ".join(f"{key} = {text_of(value)}" for key, value in point.values.items())
