@@ -44,7 +44,7 @@ packages:
 $(VENV)/.installed: pyproject.toml | packages
 	@echo "== Python environment $(VENV)"
 	python3 -m venv $(VENV)
-	$(PYTHON) scripts/python-requirements.py test build sweep | $(PIP_INSTALL)
+	$(PYTHON) scripts/python-requirements.py test build sweep fit | $(PIP_INSTALL)
 	@touch $@
 
 $(VENV)/.installed-browser: $(VENV)/.installed

@@ -14,6 +14,7 @@ from slipfront.program import program
 #: By their words, the module whose `main(arguments)` returns the exit code. It is imported when it is wanted.
 COMMANDS = {
     "compare": "slipfront.compare.command",
+    "fit": "slipfront.fit.command",
     "fronts": "slipfront.fronts_command",
     "gauges": "slipfront.gauges_command",
     "picks": "slipfront.picks_command",

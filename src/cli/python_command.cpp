@@ -34,6 +34,7 @@ constexpr std::array python_commands = {
     PythonCommand{nullptr, "gauges",
                   "Fit the field of a front's tip to strain gauges: fracture energy and cohesive zone"},
     PythonCommand{nullptr, "compare", "Put runs beside an experiment's records: misfits and pictures"},
+    PythonCommand{nullptr, "fit", "Find which values of a case's keys explain records, with intervals"},
     PythonCommand{nullptr, "records", "Cut the files of a laboratory's recorders into events, calibrated"},
     PythonCommand{nullptr, "picks", "Pick when a front passes each gauge of recorded events, with errors"},
     PythonCommand{nullptr, "sweep", "Run a case over values of its keys, and compare"},

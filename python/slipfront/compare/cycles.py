@@ -225,7 +225,8 @@ def compare_cycles(
     shear over normal force, friction_before, ...; as mean stress over plate.width_m, stress_before_Pa; or as
     force_before_N, ..., which `events_of_force` finds in a record of the force. [events]
     thickness_m: of the bodies, for forces in N. skip_events: first ones left out on both sides, unless
-    skip_of_record says how many of the record's, as of one that was cut out of a longer one. Events that drop by less than 0.1 of the largest are left out, too.
+    skip_of_record says how many of the record's, as of one that was cut out of a longer one. Events that
+    drop by less than 0.1 of the largest are left out, too.
 
     Returns a Dataset over `quantity`: of record and sequence n, mean, its standard error and the standard
     deviation over the events; ratio, that of the means, 1 where they agree, with ratio_error. Of all:

@@ -12,6 +12,7 @@ import numpy as np
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
 from slipfront.sweep.points import short_names
+from slipfront.units import engineering, name_of, unit_of
 
 if TYPE_CHECKING:
     from slipfront.fit.space import Space
@@ -21,19 +22,32 @@ INSIDE = (0.68, 0.90)  # of the samples, within the contours
 
 
 def draw_corner(space: Space, samples: np.ndarray, best: Mapping[str, float]) -> Drawing:
-    """Each key's marginal with its interval of 90 %, each pair's contours of 68 and 90 %, and the best run; keys
-    with a logarithmic range by their logarithms. samples: shares [samples, keys]"""
-    figure = style.new_figure(style.PAGE_MM, 40 + 38 * space.n, constrained=False)
+    """Each key's marginal with its interval of 90 %, each pair's contours of 68 and 90 %, and the best run;
+    keys with a logarithmic range on logarithmic axes. samples: shares [samples, keys]"""
+    figure = style.new_figure(style.PAGE_MM, 20 + 38 * space.n, constrained=False)
+    short, units = short_names(space.keys), []
     values = space.values(samples)
-    is_log = [of.is_log for of in space.ranges.values()]
-    shown = np.where(is_log, np.log10(np.where(is_log, values, 1.0)), values)
-    short = short_names(space.keys)
+    for k, key in enumerate(space.keys):
+        units.append(engineering(unit_of(key.rsplit(".", 1)[-1]), values[:, k]))
+    factors = np.array([unit.factor for unit in units])
     labels = [
-        f"log10 {short[key]}" if log else short[key] for key, log in zip(space.keys, is_log, strict=True)
+        plain(f"{name_of(key)} ({unit.name})" if unit.name != "1" else short[key])
+        for key, unit in zip(space.keys, units, strict=True)
     ]
+    scales = ["log" if of.is_log else "linear" for of in space.ranges.values()]
     at = np.array([best[key] for key in space.keys])
-    at = np.where(is_log, np.log10(np.where(is_log, at, 1.0)), at)
-    corner.corner(shown, fig=figure, labels=[plain(label) for label in labels], truths=at, truth_color=BEST,
-                  quantiles=(0.05, 0.5, 0.95), levels=INSIDE, plot_datapoints=False, smooth=0.7,
-                  label_kwargs={"fontsize": 8}, max_n_ticks=4)  # fmt: skip
+    corner.corner(
+        values * factors,
+        fig=figure,
+        labels=labels,
+        truths=at * factors,
+        truth_color=BEST,
+        axes_scale=scales,
+        quantiles=(0.05, 0.5, 0.95),
+        levels=INSIDE,
+        plot_datapoints=False,
+        smooth=0.7,
+        label_kwargs={"fontsize": 8},
+        max_n_ticks=4,
+    )
     return Drawing("corner", figure, "")

@@ -40,8 +40,9 @@ COMBINATIONS = (
                 lambda s, k, p, d: (s - k) * p * d),
     Combination("weakening (mu_s - mu_k) p/d_c", "Pa/m", (MU_S, MU_K, P, D_C), LINEAR + EXPONENTIAL,
                 lambda s, k, p, d: (s - k) * p / d),
-    Combination("length of the crack G (mu_s - mu_k) p d_c/2/(t - mu_k p)^2", "m", (MU_S, MU_K, P, D_C, T, E, NU),
-                LINEAR, lambda s, k, p, d, t, e, nu: e / (4 + 4 * nu) * (s - k) * p * d / (t - k * p) ** 2),
+    Combination("length of a crack G (mu_s - mu_k) p d_c/2/(t - mu_k p)^2", "m",
+                (MU_S, MU_K, P, D_C, T, E, NU), LINEAR,
+                lambda s, k, p, d, t, e, nu: e / (4 + 4 * nu) * (s - k) * p * d / (t - k * p) ** 2),
     Combination("stress drop t - mu_k p", "Pa", (T, MU_K, P), (), lambda t, k, p: t - k * p),
     Combination("strength excess S = (mu_s p - t)/(t - mu_k p)", "", (MU_S, T, MU_K, P), (),
                 lambda s, t, k, p: (s * p - t) / (t - k * p)),
@@ -125,12 +126,11 @@ def findings(
             slope = float(np.sign(alike[i, j]) * b.std() / a.std())
             way = "rises" if slope > 0 else "falls"
             told.append(
-                f"{first} and {second} trade off (correlation {alike[i, j]:.2f}): where {first} rises by 1 %, "
-                f"{second} {way} by {abs(slope):.2g} %"
+                f"{first} and {second} trade off (correlation {alike[i, j]:.2f}): "
+                f"where {first} rises by 1 %, {second} {way} by {abs(slope):.2g} %"
             )
     undetermined = {of.name for of in keys if not of.is_determined}
-    clear = [one for one in combined if one.clear < CLEAR and (trading | undetermined) & {*one.of.keys}]
-    told += [
-        f"determined better than its keys: {in_words(one.marginal, one.of.unit)}" for one in clear[:MOST_TOLD]
-    ]
+    unsure = trading | undetermined
+    clear = [one for one in combined if one.clear < CLEAR and unsure & {*one.of.keys}][:MOST_TOLD]
+    told += [f"determined better than its keys: {in_words(of.marginal, of.of.unit)}" for of in clear]
     return told

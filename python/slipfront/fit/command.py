@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`slipfront fit CASE RECORDS... --free KEY=FROM:TO[:log] ... -o DIR`: which values explain the records."""
+"""`slipfront fit CASE RECORDS... --free KEY=FROM:TO[:log] -o DIR`: which values explain records."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     add("--restart", metavar="DIR", type=Path, help="go on with the fit in this folder")
     add("--free", metavar="KEY=FROM:TO[:log]", help="a key and its range; repeat", **several)
     add("--set", metavar="KEY=VALUE", help="set another key of the case; repeat", **several)
-    add("--clock", choices=("free", "run"), default="free", help="whether the records' clock is free, or time "
-        "0 is that of the run (default: free)")  # fmt: skip
+    add("--clock", choices=("free", "run"), default="free", help="whether the records' clock is free, or "
+        "time 0 is that of the run (default: free)")  # fmt: skip
     add("--gain", choices=("known", "free"), default="known", help="of traces: whether amplitudes count "
         "(default: known)")  # fmt: skip
     add("--fit-events", metavar="N,M-K", type=events, help="of records with several events, or of a table of "
@@ -60,8 +60,8 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     add("--most", metavar="N", type=int, help=f"runs at most (default: {MOST_A_KEY} a key)")
     add("--workers", metavar="N", type=int, help="runs at a time, one thread each (default: processors)")
     add("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers see DIR, not local ones")
-    add("--slurm", metavar="FILE", type=Path, help="write a script for an array of Slurm jobs, which does the "
-        "first runs; run nothing")  # fmt: skip
+    add("--slurm", metavar="FILE", type=Path, help="write a script for an array of Slurm jobs, which does "
+        "the first runs; run nothing")  # fmt: skip
     add("-q", "--quiet", action="store_true", help="print nothing but errors")
     add_record_options(parser)
     return parser.parse_args(arguments)
@@ -103,7 +103,7 @@ def asked_of(options: argparse.Namespace, read: list[tuple[Kind, Record]]) -> As
     chosen: list[tuple[Kind, Record]] = []
     is_fitted: list[bool] = []
     for wanted, fitted in ((options.fit_events, True), (options.predict_events, False)):
-        found = []
+        found: list[tuple[Kind, Record]] = []
         for kind, record in read:
             if wanted and isinstance(kind, Cycles):
                 found.append((kind, rows_of(record, wanted)))

@@ -70,7 +70,7 @@ class Emulator:
         mean = values.mean(axis=0)
         _, sizes, rows = np.linalg.svd(values - mean, full_matrices=False)
         left = np.append(np.cumsum(sizes[::-1] ** 2)[::-1], 0.0) / len(values)  # of a run
-        n = int(min(np.argmax(left <= LEFT_OUT**2), MOST_COMPONENTS, len(sizes)))
+        n = min(int(np.argmax(left <= LEFT_OUT**2)), MOST_COMPONENTS, len(sizes))
         components = rows[:n]
         amplitudes = (values - mean) @ components.T
         beyond = values - mean - amplitudes @ components
@@ -79,7 +79,7 @@ class Emulator:
         for part, begin, end in zip(parts, ends[:-1], ends[1:], strict=True):
             own = slice(begin, end)
             stack = np.column_stack([part.reduced(part.measured), mean[own], components[:, own].T])
-            basis = np.linalg.qr(stack, mode="r").T
+            basis = np.asarray(np.linalg.qr(stack, mode="r")).T
             left_out = float((beyond[:, own] ** 2).mean())
             self.reduced.append(Reduced(part, basis[0], basis[1], basis[2:], left_out))
         n_keys = known.shape[1]
@@ -126,8 +126,8 @@ class Emulator:
 
 
 class Process:
-    """A Gaussian process whose parameters scikit-learn has found. Its own prediction checks its arguments, which
-    takes ten times as long as this one for the few points of a step of the sampler."""
+    """A Gaussian process whose parameters scikit-learn has found. Of the few points of a step of the sampler
+    that library's own prediction takes ten times as long, as it checks its arguments."""
 
     def __init__(self, places: np.ndarray, values: np.ndarray) -> None:
         kernel = ConstantKernel(1.0, (1e-3, 1e3)) * Matern(np.full(places.shape[1], 2.0), (0.1, 1e3), nu=2.5)

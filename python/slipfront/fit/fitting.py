@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From the first runs to the posterior: Sobol's points over the ranges; then, round by round, a process over what
-the runs computed, samples of the posterior that it gives, and runs at some of them, until these agree with what
-it expected. At last least squares of runs alone, from the most probable place."""
+"""From the first runs to the posterior: Sobol's points over the ranges; then, round by round, an emulator
+of what the runs computed, samples of the posterior that it gives, and runs at some of them, until these agree
+with what was expected of them. At last least squares of runs alone, from the most probable place."""
 
 from __future__ import annotations
 
@@ -36,6 +36,8 @@ MARGIN = 0.1  # of the emulator's box
 AGREE = 0.4  # root mean square of what is expected of log L less what runs have
 STEPS, LAST_STEPS = 300, 1500
 BEYOND = 0.02  # share of samples at the end of the emulator's box that the posterior leaves
+HEAT = 4.0  # by which log L is divided for the wider posterior
+BETTER = 1.0  # of log L, by which least squares of runs may not surpass the place that was expected
 NEAR = 6.0  # below the best, within which these are compared
 
 
@@ -47,10 +49,14 @@ class Asked:
     is_fitted: list[bool]
     options: argparse.Namespace
 
+    @property
+    def predicted(self) -> list[tuple[Kind, Record]]:
+        return [of for of, fitted in zip(self.records, self.is_fitted, strict=True) if not fitted]
+
 
 @dataclass
 class Ran:
-    """A point with what its run makes of each record's parts, or why there is no run, or nothing to compare."""
+    """A point with what its run makes of each record's parts, or why there is none."""
 
     point: Point
     share: np.ndarray
@@ -88,7 +94,7 @@ class Result:
     disagreement: float  # root mean square, log L expected less that of runs, in the last round
     check: Check | None
     rounds: int
-    at_edge: list[str]
+    at_ends: list[str]  # keys whose posterior goes on beyond the runs
     notes: list[str]
 
     @property
@@ -234,7 +240,7 @@ class Fitting:
         shares = np.array([ran.share for ran in usable])
         logs = self.of_runs(computed)
         n = self.space.n
-        least = 3 * (n + 1) * (n + 2) // 2
+        least = (n + 1) * (n + 2)  # twice the terms of the emulator's polynomial
         order = np.argsort(-logs)
         chosen = order[: max(least, int((logs > logs.max() - PLAUSIBLE).sum()))][:MOST_TRAINING]
         low, high = shares[chosen].min(axis=0), shares[chosen].max(axis=0)
@@ -252,18 +258,6 @@ class Fitting:
         start = start[np.isfinite(emulator.log_likelihood(start))]
         return sampled(lambda s: emulator.log_likelihood(s) / heat, start, steps, self.rng)
 
-    def expectation(self, expected: np.ndarray, first: int) -> float:
-        """Root mean square of expected log L of the runs from one on, less theirs, about the mean."""
-        fresh = self.ran[first:]
-        usable = self.usable
-        logs = self.of_runs(self.computed(usable))
-        by_run = {id(ran): float(log) for ran, log in zip(usable, logs, strict=True)}
-        pairs = [(e, by_run[id(ran)]) for e, ran in zip(expected, fresh, strict=True) if id(ran) in by_run]
-        pairs = [(e, log) for e, log in pairs if log > logs.max() - NEAR]
-        if len(pairs) < max(2, len(fresh) // 3):
-            return np.inf
-        return float(np.sqrt(np.mean([(e - log) ** 2 for e, log in pairs])))
-
     def carry_out(self, first: int, batch: int, tell: Callable[[str], None]) -> Result:
         self.resume()
         self.add(self.space.sobol(first))
@@ -272,8 +266,8 @@ class Fitting:
             reasons = [ran.why_not for ran in self.ran if ran.why_not]
             told = f": {reasons[0]}" if reasons else ""
             raise DataError(
-                f"only {len(self.usable)} of {len(self.ran)} runs can be compared with the records, {least} are "
-                f"needed{told}; choose narrower ranges or more first runs"
+                f"only {len(self.usable)} of {len(self.ran)} runs can be compared with the records, {least} "
+                f"are needed{told}; choose narrower ranges or more first runs"
             )
         rounds, disagreement = 0, np.inf
         while True:
@@ -284,30 +278,52 @@ class Fitting:
                 else ""
             )
             tell(f"round {rounds}: {len(self.ran)} runs, {len(shares)} of them like the record{off}")
-            if disagreement < AGREE or len(self.ran) + batch > self.most_runs:
-                break
+            is_spent = len(self.ran) + batch > self.most_runs
+            if disagreement < AGREE or is_spent:
+                samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
+                check = self.least_squares(emulator, samples, tell)
+                is_best = check is None or check.gain < BETTER
+                if is_spent and not is_best:
+                    emulator, shares, logs = self.emulator()
+                    samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
+                ends = self.at_ends(emulator, samples)
+                if is_spent or (is_best and not ends):
+                    return self.result(samples, n_independent, disagreement, check, rounds, ends)
+                if not is_best:
+                    emulator, shares, logs = self.emulator()
             rounds += 1
-            cold, _ = self.sample(emulator, shares, logs, STEPS)
-            known = np.array([ran.share for ran in self.ran])
-            some = cold[self.rng.integers(len(cold), size=400)]
-            likely = some[np.argmax(emulator.log_likelihood(some))][None]
-            others = np.concatenate([known, likely])
-            chosen = np.concatenate([likely, spread_out(some, others, batch - 1)])
-            hot, _ = self.sample(emulator, shares, logs, STEPS // 2, heat=4.0)
-            beyond = spread_out(hot[self.rng.integers(len(hot), size=400)],
-                                np.concatenate([known, chosen]), batch // 2)  # fmt: skip
-            expected = emulator.log_likelihood(chosen)
-            n_before = len(self.ran)
-            self.add(chosen)
-            fresh = len(self.ran) - n_before
-            disagreement = self.expectation(expected[:fresh], n_before) if fresh == len(chosen) else np.inf
-            self.add(beyond)
-        samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
-        check = self.least_squares(emulator, samples, tell)
-        if check is not None and check.gain > 1.0:
-            emulator, shares, logs = self.emulator()
-            samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
-        return self.result(emulator, samples, n_independent, disagreement, check, rounds)
+            disagreement = self.round(emulator, shares, logs, batch)
+
+    def round(self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, batch: int) -> float:
+        """Runs at samples of the posterior and at some of a wider one; returns the root mean square of what was
+        expected of log L less what the runs have, infinite where few are near the best."""
+        cold, _ = self.sample(emulator, shares, logs, STEPS)
+        known = np.array([ran.share for ran in self.ran])
+        some = cold[self.rng.integers(len(cold), size=400)]
+        likely = some[np.argmax(emulator.log_likelihood(some))][None]
+        others = np.concatenate([known, likely])
+        chosen = np.concatenate([likely, spread_out(some, others, batch - 1)])
+        hot, _ = self.sample(emulator, shares, logs, STEPS // 2, heat=HEAT)
+        wider = hot[self.rng.integers(len(hot), size=400)]
+        beyond = spread_out(wider, np.concatenate([others, chosen]), batch // 2)
+        expected = emulator.log_likelihood(chosen)
+        self.add(np.concatenate([chosen, beyond]))
+        usable = {ran.point.words: k for k, ran in enumerate(self.usable)}
+        found = self.of_runs(self.computed(self.usable))
+        at = [usable.get(point.words) for point in self.space.points(chosen)]
+        pairs = [(e, found[k]) for e, k in zip(expected, at, strict=True) if k is not None]
+        near = [(e, log) for e, log in pairs if log > found.max() - NEAR]
+        if len(near) < max(2, len(chosen) // 3):
+            return np.inf
+        return float(np.sqrt(np.mean([(e - log) ** 2 for e, log in near])))
+
+    def at_ends(self, emulator: Emulator, samples: np.ndarray) -> list[str]:
+        """Keys whose posterior goes on beyond the emulator's box."""
+        side = 0.02 * (emulator.high - emulator.low)
+        below = (samples < emulator.low + side).mean(axis=0) * (emulator.low > 0)
+        above = (samples > emulator.high - side).mean(axis=0) * (emulator.high < 1)
+        shares = zip(self.space.keys, np.maximum(below, above), strict=True)
+        return [key for key, share in shares if share > BEYOND]
 
     def least_squares(
         self, emulator: Emulator, samples: np.ndarray, tell: Callable[[str], None]
@@ -338,7 +354,7 @@ class Fitting:
                      (places[best] - start) / deviation)  # fmt: skip
 
     def logs_and_residuals(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """log L, -inf of runs without a comparison, and residuals over their most probable errors at the first.
+        """log L, -inf of runs without a comparison, and residuals over the first run's most probable errors.
         [points], [points, values]"""
         self.add(shares)
         by_words = {ran.point.words: ran for ran in self.ran if not ran.why_not}
@@ -359,35 +375,51 @@ class Fitting:
             left[known] = np.concatenate(rows, axis=1)
         return logs, left
 
-    def result(self, emulator: Emulator, samples: np.ndarray, n_independent: float, disagreement: float,
-               check: Check | None, rounds: int) -> Result:  # fmt: skip
-        usable = self.usable
-        logs = self.of_runs(self.computed(usable))
-        by_run = {id(ran): float(log) for ran, log in zip(usable, logs, strict=True)}
-        of_ran = np.array([by_run.get(id(ran), -np.inf) for ran in self.ran])
-        side = 0.02 * (emulator.high - emulator.low)
-        below = (samples < emulator.low + side).mean(axis=0) * (emulator.low > 0)
-        above = (samples > emulator.high - side).mean(axis=0) * (emulator.high < 1)
-        at_edge = [key for key, share in zip(self.space.keys, np.maximum(below, above), strict=True)
-                   if share > BEYOND]  # fmt: skip
-        return Result(self.space, self.parts, self.ran, of_ran, samples, n_independent, disagreement, check,
-                      rounds, at_edge, self.notes())  # fmt: skip
+    def result(
+        self,
+        samples: np.ndarray,
+        n_independent: float,
+        disagreement: float,
+        check: Check | None,
+        rounds: int,
+        at_ends: list[str],
+    ) -> Result:
+        usable = {id(ran) for ran in self.usable}
+        logs = iter(self.of_runs(self.computed(self.usable)))
+        of_ran = np.array([next(logs) if id(ran) in usable else -np.inf for ran in self.ran])
+        return Result(
+            self.space,
+            self.parts,
+            self.ran,
+            of_ran,
+            samples,
+            n_independent,
+            disagreement,
+            check,
+            rounds,
+            at_ends,
+            self.notes(),
+        )
 
     def notes(self) -> list[str]:
         """Runs that failed or have no front where the record has one, and places that no run explains."""
         told = []
         failed = [ran for ran in self.ran if ran.why_not]
         if failed:
-            told.append(f"{len(failed)} of {len(self.ran)} runs are left out; the first, at "
-                        f"{failed[0].point.words}: {failed[0].why_not}")  # fmt: skip
+            first = f"{failed[0].point.words}: {failed[0].why_not}"
+            told.append(f"{len(failed)} of {len(self.ran)} runs are left out; the first, at {first}")
         usable = self.usable
         unlike = len(self.ran) - len(failed) - len(usable)
         if unlike:
-            told.append(f"{unlike} runs have fronts at other places of the record than the rest: their points "
-                        "are ruled out")  # fmt: skip
+            told.append(
+                f"{unlike} runs have fronts at other places of the record than the rest: "
+                "their points are ruled out"
+            )
         if usable and usable[0].n_mismatched:
-            told.append(f"{usable[0].n_mismatched} places of the record have no front in any of the runs, or "
-                        "one where the record has none: they do not count")  # fmt: skip
+            told.append(
+                f"{usable[0].n_mismatched} places of the record have no front in any of the runs, or one "
+                "where the record has none: they do not count"
+            )
         return told
 
 

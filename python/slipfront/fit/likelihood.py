@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How probable a run makes the records.
 
-A value that was measured differs from the run's by noise of its known standard error, and by what the model
-leaves out: a factor s >= 1 on that error, one for each part of the records, whose prior is uniform in its
-logarithm. Where no error is known, s is the whole of it. The unknown constant of a part, its gain and s are
-integrated or fitted away in closed form. Residuals of neighbours that are alike count as fewer: n/c of n values,
-with c from the autocorrelation of what the best run leaves."""
+A measured value differs from the run's by noise of its known standard error, and by what the model leaves
+out: a factor s >= 1 on that error, one for each part of the records, whose prior is uniform in its logarithm.
+Where no error is known, s is the whole of it. The unknown constant of a part and its gain are fitted, s is
+integrated, both in closed form. Residuals of neighbours that are alike count as fewer: n/c of n values, with
+c from the autocorrelation of what the best run leaves."""
 
 from __future__ import annotations
 

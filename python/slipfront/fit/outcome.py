@@ -26,7 +26,7 @@ from slipfront.figures.fit import draw_corner
 from slipfront.figures.style import RC
 from slipfront.files import read_toml
 from slipfront.fit.combinations import Combined, combinations, findings, in_words, number
-from slipfront.fit.fitting import RUNS, Asked, Fitting, Result
+from slipfront.fit.fitting import BETTER, RUNS, Asked, Fitting, Result
 from slipfront.fit.likelihood import Part
 from slipfront.fit.posterior import Marginal, at_an_end, correlations, marginals
 from slipfront.opened_sequence import opened
@@ -100,11 +100,15 @@ def misfits(parts: list[Part], of: dict[str, dict[str, Any]]) -> list[str]:
     for part in parts:
         chance = of[part.name].get("probability_of_chi2")
         if chance is not None and chance < UNLIKELY:
-            told.append(f"the model does not explain {part.name}: what is left has a chance of {chance:.1g} by "
-                        "its errors alone; another law, load or geometry may")  # fmt: skip
+            told.append(
+                f"the model does not explain {part.name}: by its errors alone what is left has a chance of "
+                f"{chance:.1g}; another law, load or geometry may"
+            )
         elif chance is None and part.alike > ALIKE:
-            told.append(f"what is left of {part.name} is no noise: neighbours are alike, so that "
-                        f"{part.n} values count as {part.freedom:.0f}")  # fmt: skip
+            told.append(
+                f"what is left of {part.name} is no noise: neighbours are alike, so that {part.n} values "
+                f"count as {part.freedom:.0f}"
+            )
     return told
 
 
@@ -134,7 +138,7 @@ def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
     if result.n_independent < FEW:
         told.append(f"only {result.n_independent:.0f} independent samples: intervals are rough")
     told += [
-        f"the posterior of {key} goes on beyond the runs: allow more by --most" for key in result.at_edge
+        f"the posterior of {key} goes on beyond the runs: allow more by --most" for key in result.at_ends
     ]
     for k, of in enumerate(keys):
         if end := at_an_end(result.space, result.samples, of, k):
@@ -142,7 +146,7 @@ def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
     check = result.check
     if check is None:
         told.append("least squares of runs failed: a run beside the best one has no comparison")
-    elif check.gain > 2:
+    elif check.gain > BETTER:
         told.append(
             f"least squares of runs is better by {check.gain:.1f} of log L than the place that was expected"
         )
@@ -177,7 +181,7 @@ def outcome_of(options: argparse.Namespace, asked: Asked, fitting: Fitting, resu
         "case": str(options.case.resolve()),
         "set": fitting.settings,
         "records": [record.label for _, record in asked.records],
-        "predicted": [r.label for (_, r), fitted in zip(asked.records, asked.is_fitted, strict=True) if not fitted],
+        "predicted": [record.label for _, record in asked.predicted],
         "free": {key: options_range(of) for key, of in space.ranges.items()},
         "parameters": {of.name: entry(of) | {"is_determined": of.is_determined} for of in keys},
         "combinations": {one.of.name: entry(one.marginal) | {"unit": one.of.unit, "clear": one.clear}
@@ -237,9 +241,11 @@ def page_of(outcome: Outcome, corner: Drawing) -> Page:
     picture = f'<img src="data:image/svg+xml;base64,{image}" alt="posterior" style="max-width:100%">'
     combined = "".join(f"<p>{words(in_words(one.marginal, one.of.unit))}.</p>" for one in outcome.combined)
     told = "".join(f"<p>{words(line)}.</p>" for line in outcome.entries["findings"])
-    parts = [[words(name), str(of["values"]), f"{of['values_that_count']:.1f}", f"{of['rms_left']:.3g} {of['unit']}",
-              "–" if of["standard_error"] is None else f"{of['standard_error']:.3g} {of['unit']}"]
-             for name, of in outcome.entries["parts"].items()]  # fmt: skip
+    parts = []
+    for name, of in outcome.entries["parts"].items():
+        error = "–" if of["standard_error"] is None else f"{of['standard_error']:.3g} {of['unit']}"
+        counted = f"{of['values_that_count']:.1f}"
+        parts.append([words(name), str(of["values"]), counted, f"{of['rms_left']:.3g} {of['unit']}", error])
     left = ["part", "values", "that count", "left by the best run", "standard error"]
     made = [
         section(

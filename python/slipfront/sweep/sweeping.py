@@ -9,7 +9,7 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
@@ -53,7 +53,9 @@ class Needs:
         )
 
 
-def refused(sweep: Sweep, program: Path, points: list[Point], quiet: bool) -> Iterator[tuple[Point, str]]:
+def refused(
+    sweep: Sweep, program: Path, points: list[Point], quiet: bool
+) -> Generator[tuple[Point, str], None, None]:
     """Points that the program refuses, each with its reason."""
     common = sweep.settings()
 
