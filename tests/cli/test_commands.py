@@ -7,7 +7,7 @@ import pytest
 from common import ROOT, refusal, require_done, sets
 
 COMMANDS = ["run", "study", "info", "fracture", "bench", "validate", "new", "keys"]
-PYTHON_COMMANDS = ["report", "fronts", "gauges", "compare", "records", "picks", "sweep"]
+PYTHON_COMMANDS = ["report", "fronts", "gauges", "compare", "fit", "records", "picks", "sweep"]
 PYTHON_STUDIES = ["study convergence", "study interface-step"]
 CASES = sorted((ROOT / "papers/kammer2012").glob("*.toml"))
 

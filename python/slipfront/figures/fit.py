@@ -36,6 +36,12 @@ def draw_corner(space: Space, samples: np.ndarray, best: Mapping[str, float]) ->
     ]
     scales = ["log" if of.is_log else "linear" for of in space.ranges.values()]
     at = np.array([best[key] for key in space.keys])
+    if space.n == 1:  # which corner does not draw
+        ax = figure.subplots()
+        ax.hist(values[:, 0] * factors[0], bins=30, histtype="step", color="black")
+        ax.axvline(at[0] * factors[0], color=BEST)
+        ax.set(xlabel=labels[0], xscale=scales[0], yticks=[])
+        return Drawing("corner", figure, "")
     corner.corner(
         values * factors,
         fig=figure,

@@ -34,6 +34,7 @@ from slipfront.sweep.sweeping import How, array_script
 NAME = "slipfront fit"
 REQUEST = "request.json"
 FIRST_A_KEY, BATCH_A_KEY, MOST_A_KEY = 16, 4, 100  # runs
+OF_RESTART = ("most", "workers", "scheduler", "quiet")  # on which no result of a run depends
 DESCRIPTION = """Finds which values of a case's keys explain an experiment's records: runs at points over the
 ranges, then at those that the records leave, until what is left is known. Results in DIR: intervals,
 correlations, what is not determined, the best case, a page. docs/fit.md"""
@@ -131,7 +132,14 @@ def require_sound(options: argparse.Namespace) -> None:
         raise DataError(f"{folder}: holds something, and no fit; choose another folder")
 
 
-def restarted(folder: Path) -> argparse.Namespace:
+def restarted(given: argparse.Namespace) -> argparse.Namespace:
+    """The fit of a folder as it was asked for, but for how it is carried out."""
+    folder, plain = given.restart, vars(parse([]))
+    changed = [name for name, value in vars(given).items() if name != "restart" and value != plain[name]]
+    for name in changed:
+        if name not in OF_RESTART:
+            what = name.upper() if name in ("case", "records") else command.option(name)
+            raise DataError(f"--restart DIR goes on with the fit in DIR: leave out {what}")
     file = folder / REQUEST
     if not exists(file):
         raise DataError(f"{folder}: holds no fit")
@@ -140,6 +148,8 @@ def restarted(folder: Path) -> argparse.Namespace:
         raise DataError(f"{file}: not the request of a fit, or of another version")
     options = parse(found)
     options.output = folder
+    for name in changed:
+        setattr(options, name, getattr(given, name))
     return options
 
 
@@ -160,10 +170,9 @@ def fitting_of(options: argparse.Namespace, space: Space, asked: Asked, how: How
 
 
 def work(options: argparse.Namespace, arguments: Sequence[str], output: command.Output) -> list[str]:
-    if options.restart is not None:
-        if options.case or options.output or options.free:
-            raise DataError("--restart DIR goes on with the fit in DIR: no CASE, --output or --free")
-        options = restarted(options.restart)
+    is_restarted = options.restart is not None
+    if is_restarted:
+        options = restarted(options)
     require_sound(options)
     space = space_of(once_each(options.free, "--free"))
     options.event = None
@@ -176,7 +185,7 @@ def work(options: argparse.Namespace, arguments: Sequence[str], output: command.
     how = How(workers, options.scheduler, None, options.quiet, output.say, has_tables=False)
     fitting = fitting_of(options, space, asked, how)
     first = options.first or FIRST_A_KEY * space.n
-    if options.restart is None:
+    if not is_restarted:
         write_request(options, arguments)
     if options.slurm is not None:
         points = space.points(space.sobol(first))

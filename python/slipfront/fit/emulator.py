@@ -19,6 +19,7 @@ from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 from slipfront.fit.likelihood import Part
 
 MOST_COMPONENTS = 15
+NOISE_DRAWS = 50
 LEFT_OUT = (
     0.3  # of a standard error, root of the sum of squares over the values, that the components may leave
 )
@@ -110,6 +111,14 @@ class Emulator:
             values[:, k] += self.spread[k] * mean
             variances[:, k] = self.spread[k] ** 2 * variance
         return values, variances
+
+    def noise_of_log_likelihood(self, shares: np.ndarray, rng: np.random.Generator) -> float:
+        """Root mean square of what the runs' own noise, such as that of a mesh, adds to log L at shares."""
+        amplitudes, variances = self.predict(shares)
+        noise = self.spread * np.sqrt([process.noise for process in self.processes])
+        drawn = amplitudes + noise * rng.normal(size=(NOISE_DRAWS, *amplitudes.shape))
+        found = np.sum([one.log_likelihood(drawn, variances) for one in self.reduced], axis=0)
+        return float(np.sqrt((found.std(axis=0) ** 2).mean()))
 
     def log_likelihood(self, shares: np.ndarray) -> np.ndarray:
         """-inf where the emulator knows nothing. [points]"""

@@ -92,6 +92,7 @@ class Result:
     samples: np.ndarray  # shares
     n_independent: float
     disagreement: float  # root mean square, log L expected less that of runs, in the last round
+    noise: float  # how much of it is the runs' own
     check: Check | None
     rounds: int
     at_ends: list[str]  # keys whose posterior goes on beyond the runs
@@ -269,17 +270,17 @@ class Fitting:
                 f"only {len(self.usable)} of {len(self.ran)} runs can be compared with the records, {least} "
                 f"are needed{told}; choose narrower ranges or more first runs"
             )
-        rounds, disagreement = 0, np.inf
+        rounds, disagreement, noise = 0, np.inf, 0.0
         while True:
             emulator, shares, logs = self.emulator()
-            off = (
-                f"; log L of the last ones was expected to {disagreement:.2g}"
-                if disagreement < np.inf
-                else ""
-            )
+            off = ""
+            if disagreement < np.inf:
+                off = (
+                    f"; log L of the last ones was expected to {disagreement:.2g}, their noise is {noise:.2g}"
+                )
             tell(f"round {rounds}: {len(self.ran)} runs, {len(shares)} of them like the record{off}")
             is_spent = len(self.ran) + batch > self.most_runs
-            if disagreement < AGREE or is_spent:
+            if disagreement < float(np.hypot(AGREE, noise)) or is_spent:
                 samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
                 check = self.least_squares(emulator, samples, tell)
                 is_best = check is None or check.gain < BETTER
@@ -288,15 +289,18 @@ class Fitting:
                     samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
                 ends = self.at_ends(emulator, samples)
                 if is_spent or (is_best and not ends):
-                    return self.result(samples, n_independent, disagreement, check, rounds, ends)
+                    return self.result(samples, n_independent, disagreement, noise, check, rounds, ends)
                 if not is_best:
                     emulator, shares, logs = self.emulator()
             rounds += 1
-            disagreement = self.round(emulator, shares, logs, batch)
+            disagreement, noise = self.round(emulator, shares, logs, batch)
 
-    def round(self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, batch: int) -> float:
-        """Runs at samples of the posterior and at some of a wider one; returns the root mean square of what was
-        expected of log L less what the runs have, infinite where few are near the best."""
+    def round(
+        self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, batch: int
+    ) -> tuple[float, float]:
+        """Runs at samples of the posterior and at some of a wider one. Returns by how much log L was expected
+        wrongly, root mean square, infinite where few runs are near the best; and how much of it is the runs'
+        own noise."""
         cold, _ = self.sample(emulator, shares, logs, STEPS)
         known = np.array([ran.share for ran in self.ran])
         some = cold[self.rng.integers(len(cold), size=400)]
@@ -313,9 +317,10 @@ class Fitting:
         at = [usable.get(point.words) for point in self.space.points(chosen)]
         pairs = [(e, found[k]) for e, k in zip(expected, at, strict=True) if k is not None]
         near = [(e, log) for e, log in pairs if log > found.max() - NEAR]
+        noise = emulator.noise_of_log_likelihood(chosen, self.rng)
         if len(near) < max(2, len(chosen) // 3):
-            return np.inf
-        return float(np.sqrt(np.mean([(e - log) ** 2 for e, log in near])))
+            return np.inf, noise
+        return float(np.sqrt(np.mean([(e - log) ** 2 for e, log in near]))), noise
 
     def at_ends(self, emulator: Emulator, samples: np.ndarray) -> list[str]:
         """Keys whose posterior goes on beyond the emulator's box."""
@@ -380,6 +385,7 @@ class Fitting:
         samples: np.ndarray,
         n_independent: float,
         disagreement: float,
+        noise: float,
         check: Check | None,
         rounds: int,
         at_ends: list[str],
@@ -395,6 +401,7 @@ class Fitting:
             samples,
             n_independent,
             disagreement,
+            noise,
             check,
             rounds,
             at_ends,

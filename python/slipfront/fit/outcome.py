@@ -126,7 +126,7 @@ def pictures_of(asked: Asked, run: Opened) -> list[ShownPart]:
 
 def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
     told = list(result.notes)
-    if not result.disagreement < AGREED:
+    if not result.disagreement < np.hypot(AGREED, result.noise):
         expected = (
             "no round has tested it"
             if np.isinf(result.disagreement)
@@ -202,6 +202,7 @@ def outcome_of(options: argparse.Namespace, asked: Asked, fitting: Fitting, resu
         },
         "runs": {"all": len(result.ran), "left_out": sum(bool(ran.why_not) for ran in result.ran),
                  "rounds": result.rounds, "expected_log_likelihood_off_by": result.disagreement,
+                 "noise_of_log_likelihood": result.noise,
                  "independent_samples": result.n_independent},
         "findings": told,
         "notes": notes,
