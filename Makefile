@@ -22,7 +22,7 @@ RESULTS ?= results
 EXPERIMENT ?=
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
+PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check -r /dev/stdin
 # Of CMakePresets.json: release, or mpi, whose program several processes can share and which runs alone as well.
 PRESET ?= release
 BUILD := build/$(PRESET)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import corner
 import numpy as np
+from matplotlib.ticker import FuncFormatter
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from slipfront.fit.space import Space
 
 BEST = "#d55e00"
+PLAIN = FuncFormatter(lambda value, _: f"{value:g}")
 INSIDE = (0.68, 0.90)  # of the samples, within the contours
 
 
@@ -56,4 +58,9 @@ def draw_corner(space: Space, samples: np.ndarray, best: Mapping[str, float]) ->
         label_kwargs={"fontsize": 8},
         max_n_ticks=4,
     )
+    for ax in figure.axes:
+        for axis in (ax.xaxis, ax.yaxis):
+            if axis.get_scale() == "log":
+                axis.set_major_formatter(PLAIN)
+                axis.set_minor_formatter(PLAIN)
     return Drawing("corner", figure, "")

@@ -283,7 +283,7 @@ class Fitting:
             if disagreement < float(np.hypot(AGREE, noise)) or is_spent:
                 samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
                 check = self.least_squares(emulator, samples, tell)
-                is_best = check is None or check.gain < BETTER
+                is_best = check is None or check.gain < np.hypot(BETTER, 2 * noise)
                 if is_spent and not is_best:
                     emulator, shares, logs = self.emulator()
                     samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)

@@ -25,7 +25,7 @@ from slipfront.figures.drawing import Drawing, guarded
 from slipfront.figures.fit import draw_corner
 from slipfront.figures.style import RC
 from slipfront.files import read_toml
-from slipfront.fit.combinations import Combined, combinations, findings, in_words, number
+from slipfront.fit.combinations import Combined, combinations, findings, number
 from slipfront.fit.fitting import BETTER, RUNS, Asked, Fitting, Result
 from slipfront.fit.likelihood import Part
 from slipfront.fit.posterior import Marginal, at_an_end, correlations, marginals
@@ -88,10 +88,16 @@ def quality(part: Part, run: np.ndarray) -> dict[str, Any]:
 
 
 def quality_line(name: str, of: dict[str, Any]) -> str:
-    told = f"{name}: the best run leaves {number(of['rms_left'])} {of['unit']} rms"
+    told = f"{name}: the best run leaves {in_unit(of['rms_left'], of['unit'])} rms"
     if of["standard_error"] is not None:
         return f"{told}, {of['rms_left'] / of['standard_error']:.2f} times the standard errors"
-    return told if of["rms_over_deviation"] is None else f"{told}, {100 * of['rms_over_deviation']:.0f} %"
+    if of["rms_over_deviation"] is None:
+        return told
+    return f"{told}, {100 * of['rms_over_deviation']:.0f} % of its standard deviation"
+
+
+def in_unit(value: float, unit: str) -> str:
+    return number(value) if unit == "1" else f"{number(value)} {unit}"
 
 
 def misfits(parts: list[Part], of: dict[str, dict[str, Any]]) -> list[str]:
@@ -237,21 +243,22 @@ def page_of(outcome: Outcome, corner: Drawing) -> Page:
         best = number(outcome.entries["best"]["values"][of.name])
         rows.append([words(of.name), number(of.median), f"{number(low68)} to {number(high68)}",
                      f"{number(low)} to {number(high)}", best])  # fmt: skip
-    head = ["key", "median", "68 %", "90 %", "best run"]
+    head = ["key or combination", "median", "68 %", "90 %", "best run"]
     image = b64encode(corner.rendered("svg")).decode()
     picture = f'<img src="data:image/svg+xml;base64,{image}" alt="posterior" style="max-width:100%">'
-    combined = "".join(f"<p>{words(in_words(one.marginal, one.of.unit))}.</p>" for one in outcome.combined)
+    for one in outcome.combined:
+        of, unit = one.marginal, f" {one.of.unit}" if one.of.unit else ""
+        ends = (" to ".join(map(number, of.intervals[level])) + unit for level in (0.68, 0.90))
+        rows.append([words(of.name), number(of.median) + unit, *ends, "–"])
     told = "".join(f"<p>{words(line)}.</p>" for line in outcome.entries["findings"])
     parts = []
     for name, of in outcome.entries["parts"].items():
-        error = "–" if of["standard_error"] is None else f"{of['standard_error']:.3g} {of['unit']}"
+        error = "–" if of["standard_error"] is None else in_unit(of["standard_error"], of["unit"])
         counted = f"{of['values_that_count']:.1f}"
-        parts.append([words(name), str(of["values"]), counted, f"{of['rms_left']:.3g} {of['unit']}", error])
+        parts.append([words(name), str(of["values"]), counted, in_unit(of["rms_left"], of["unit"]), error])
     left = ["part", "values", "that count", "left by the best run", "standard error"]
     made = [
-        section(
-            "keys", "Free keys", table(head, rows), told, combined, warnings_list(outcome.notes), picture
-        ),
+        section("keys", "Free keys", table(head, rows), told, warnings_list(outcome.notes), picture),
         section("parts", "What is left", table(left, parts)),
         *(shown(of, f"record{k}") for k, of in enumerate(outcome.pictures)),
     ]
