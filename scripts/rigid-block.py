@@ -33,6 +33,7 @@ class Cycles:
     """Events in their order. Arrays: [events]"""
 
     begin_s: np.ndarray
+    lasts_s: np.ndarray  # of slip
     before: np.ndarray  # force over normal force where it begins
     after: np.ndarray  # at rest
     fastest: np.ndarray  # slip rate, m/s
@@ -60,7 +61,8 @@ def one(d_c_m: float) -> States:
     return States(np.array([B]), np.array([d_c_m]))
 
 
-def case(softness: float, states: States, sequence: str) -> str:
+def case(softness: float, states: States, sequence: str, heavy: float = 0) -> str:
+    """heavy: mass of the machine over that of the block."""
     return f"""
 title = "block behind a spring"
 [plate]
@@ -78,6 +80,7 @@ stiffness_damping_s = 1e-7
 [loading]
 mean_pressure_Pa = {P_PA}
 shear_stiffness_Pa_per_m = {softness * STIFFNESS / WIDTH_M}
+mass_kg_per_m2 = {heavy * M / WIDTH_M}
 shear_speed_m_per_s = {SPEED}
 edge_margin_m = {0.1 * WIDTH_M}
 [friction]
@@ -90,7 +93,7 @@ V_i_m_per_s = {V0}
 kind = "spontaneous"
 [time]
 end_s = 50e-3
-quiet_s = 0.1e-3
+quiet_s = {max(0.1e-3, 2 * np.pi * np.sqrt(heavy * M / STIFFNESS))}
 [output]
 history_interval_s = 5e-6
 [sequence]
@@ -108,6 +111,7 @@ def program(text: str, folder: Path) -> Cycles:
     fastest = [float(run.history.slip_rate_m_per_s.max()) for run in sequence.runs]
     return Cycles(
         events.begin_s.to_numpy(),
+        events.slip_s.to_numpy(),
         events.friction_before.to_numpy(),
         events.friction_after.to_numpy(),
         np.array(fastest),
@@ -116,10 +120,13 @@ def program(text: str, folder: Path) -> Cycles:
     )
 
 
-def equation(softness: float, states: States, end_s: float) -> Cycles:
+def equation(softness: float, states: States, end_s: float, heavy: float = 0) -> Cycles:
     """Rate and state, aging law: without inertia below INERTIA_FROM, and by u, ln V and states above, each
-    b ln(V0 theta/d_c)."""
+    b ln(V0 theta/d_c). A machine with a mass is an equation more: the block couples it to the slip, and half
+    of the block's mass is on either side."""
     K = softness * STIFFNESS
+    if heavy > 0:
+        K /= 1 + softness  # of both in series, without inertia
     n = len(states.b)
 
     def state_rates(state: np.ndarray, v: float) -> np.ndarray:
@@ -139,6 +146,14 @@ def equation(softness: float, states: States, end_s: float) -> Cycles:
         mu = A * np.arcsinh(0.5 * np.exp(ln_v - np.log(V0) + (F0 + sum(state)) / A))
         return [v, (K * (SPEED * t - u) - N * mu) / (M * v), *state_rates(np.array(state), v)]
 
+    def coupled(t: float, y: np.ndarray) -> list[float]:
+        u, ln_v, top, v_top, *state = y
+        v, of_block = np.exp(ln_v), STIFFNESS * (top - u)
+        mu = A * np.arcsinh(0.5 * np.exp(ln_v - np.log(V0) + (F0 + sum(state)) / A))
+        pull = softness * STIFFNESS * (SPEED * t - top) - of_block
+        return [v, (of_block - N * mu) / (0.5 * M * v), v_top, pull / ((heavy + 0.5) * M),
+                *state_rates(np.array(state), v)]  # fmt: skip
+
     speeds_up: Callable[..., float] = lambda t, y: np.log(max(slow_rate(t, *y), 1e-99) / INERTIA_FROM)  # noqa: E731
     speeds_up.terminal, speeds_up.direction = True, 1  # type: ignore[attr-defined]
     slows_down: Callable[..., float] = lambda t, y: y[1] - np.log(0.5 * INERTIA_FROM)  # noqa: E731
@@ -154,12 +169,21 @@ def equation(softness: float, states: States, end_s: float) -> Cycles:
         t, (u, *state) = found.t[-1], found.y[:, -1]
         if t >= end_s:
             break
-        first = [u, np.log(INERTIA_FROM), *state]
+        first, atol = [u, np.log(INERTIA_FROM)], [1e-15, 1e-8]
+        if heavy > 0:
+            top = u + K * (SPEED * t - u) / STIFFNESS
+            first, atol = [*first, top, INERTIA_FROM], [*atol, 1e-15, 1e-12]
         found = solve_ivp(
-            fast, (t, end_s), first, "Radau", rtol=1e-9, atol=[1e-15, 1e-8] + n * [1e-11], events=slows_down
+            coupled if heavy > 0 else fast,
+            (t, end_s),
+            [*first, *state],
+            "Radau",
+            rtol=1e-9,
+            atol=atol + n * [1e-11],
+            events=slows_down,
         )
         parts.append(np.array([found.t, found.y[0], np.exp(found.y[1])]))
-        t, u, state = found.t[-1], found.y[0, -1], found.y[2:, -1]
+        t, u, state = found.t[-1], found.y[0, -1], found.y[len(first) :, -1]
     t, u, v = np.concatenate(parts, axis=1)
     return measured(t, K * (SPEED * t - u) / N, v)
 
@@ -169,6 +193,7 @@ def measured(t: np.ndarray, force: np.ndarray, v: np.ndarray) -> Cycles:
     down = [k + int(np.argmax(v[k + 1 :] < 0.5 * THRESHOLD)) for k in up]
     return Cycles(
         t[up],
+        t[down] - t[up],
         force[up],
         np.array([force[k] for k in down]),
         np.array([v[a : b + 1].max() for a, b in zip(up, down, strict=True)]),
@@ -180,6 +205,7 @@ def measured(t: np.ndarray, force: np.ndarray, v: np.ndarray) -> Cycles:
 D_C_M = 0.7e-7
 TWO = States(np.array([B - A, A]), np.array([2 * D_C_M, 0.5 * D_C_M]))
 SOFT = (0.03, 0.01, 0.003)  # spring over block
+HEAVY = 10  # machine over block
 END_S = 130.0
 
 
@@ -205,6 +231,9 @@ def compared(folder: Path) -> list[Compared]:
         found.append(
             Compared(f"{softness}", ours, equation(softness, one(D_C_M), END_S * SOFT[1] / softness))
         )
+    ours = program(case(SOFT[1], one(D_C_M), "", HEAVY), folder / "heavy")
+    theirs = equation(SOFT[1], one(D_C_M), END_S, HEAVY)
+    found.append(Compared(f"{SOFT[1]}, machine {HEAVY} times as heavy as the block", ours, theirs))
     ours = program(case(SOFT[1], TWO, ""), folder / "two")
     found.append(Compared(f"{SOFT[1]}, two states", ours, equation(SOFT[1], TWO, END_S)))
     return found
@@ -225,9 +254,12 @@ def differences(c: Compared) -> dict[str, tuple[float, float]]:
 
     def of(cycles: Cycles) -> list[float]:
         interval = cycles.begin_s[at] - cycles.begin_s[at - 1]
-        return [interval, cycles.before[at], cycles.before[at] - cycles.after[at], cycles.fastest[at]]
+        drop = cycles.before[at] - cycles.after[at]
+        return [interval, cycles.before[at], drop, cycles.fastest[at], cycles.lasts_s[at]]
 
-    names = ("interval (s)", "F_S/F_N where it begins", "its drop", "largest slip rate (m/s)")
+    names = (
+        "interval (s)", "F_S/F_N where it begins", "its drop", "largest slip rate (m/s)", "slip lasts (s)",
+    )  # fmt: skip
     return dict(zip(names, zip(of(ours), of(theirs), strict=True), strict=True))
 
 

@@ -250,7 +250,7 @@ def tip_of(run: OpenRun, front: int, time_s: float) -> Tip:
 def loads_beside_friction(case: dict[str, Any], x_m: np.ndarray) -> tuple[float, float] | None:
     """Where an external traction acts on the interface, which the fields do not tell from friction."""
     event = case["event"]
-    if event["kind"] == "nucleation" and case["nucleation"]["form"] == "overstress":
+    if event["kind"] == "nucleation" and case["nucleation"]["form"] in ("overstress", "unloaded"):
         patch = case["nucleation"]
         reach = patch["half_length_m"] + (patch["taper_m"] if patch["profile"] == "tapered" else 0)
         return patch["x_m"] - reach, patch["x_m"] + reach

@@ -18,6 +18,7 @@ struct EdgeNode {
   /// Stiffness, per unit thickness, of the spring between the machine and the node: infinite, it moves with
   /// the machine; 0, it bears a constant force; none, the machine has nothing to do with it.
   std::optional<double> spring_x_N_per_m = {}, spring_y_N_per_m = {};
+  double machine_kg = 0;  ///< of the machine, per unit thickness, that moves along x with the node
 };
 inline bool is_spring(const std::optional<double>& spring_N_per_m) {
   return spring_N_per_m && *spring_N_per_m != infinity;

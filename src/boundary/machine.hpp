@@ -13,6 +13,7 @@ struct Machine {
   double shear_stiffness_Pa_per_m = infinity;
   double normal_stiffness_Pa_per_m = infinity;  ///< 0: the forces stay
   Pusher pusher = {};                           ///< with it the far edge moves freely along x
+  double mass_kg_per_m2 = 0;                    ///< moves along x with what it loads, over the same area
 
   bool is_rigid() const {
     return shear_stiffness_Pa_per_m == infinity && normal_stiffness_Pa_per_m == infinity;

@@ -33,6 +33,7 @@ MachineSprings::MachineSprings(const mesh::Mesh& mesh, const solid::Material& ma
     has_spring_.y.push_back(is_spring(a.spring_y_N_per_m));
     stiffness_.x.push_back(stiffness_of(a.spring_x_N_per_m));
     stiffness_.y.push_back(stiffness_of(a.spring_y_N_per_m));
+    mass_kg_.push_back(a.machine_kg);
   }
   if (node_.empty()) return;
   rows_ = solid::assemble_rows(mesh, material, node_);
@@ -59,8 +60,9 @@ void MachineSprings::move(std::size_t k, double dt_s, solid::Pair force_N, solid
                           solid::Pair after, record::Energies& works) {
   const double of_machine = dt_s * force_N.x * speed_x_m_per_s_[k];
   works.far_edge_work += of_machine;
-  works.machine +=
-      of_machine - 0.5 * dt_s * (force_N.x * (before.x + after.x) + force_N.y * (before.y + after.y));
+  works.machine += of_machine -
+                   0.5 * dt_s * (force_N.x * (before.x + after.x) + force_N.y * (before.y + after.y)) +
+                   0.5 * mass_kg_[k] * (after.x * after.x - before.x * before.x);
   force_N_.x[k] += dt_s * stiffness_.x[k] * speed_x_m_per_s_[k];
 }
 
@@ -76,8 +78,8 @@ double largest_spring_frequency_rad_per_s(const mesh::Mesh& mesh, const solid::M
   double largest = 0;
   for (const auto& a : nodes) {
     if (mass_kg[a.node] == 0 || (!of_node.empty() && !of_node[a.node])) continue;
-    const double k = std::max(stiffness_of(a.spring_x_N_per_m), stiffness_of(a.spring_y_N_per_m));
-    largest = std::max(largest, k / mass_kg[a.node]);
+    largest = std::max({largest, stiffness_of(a.spring_x_N_per_m) / (mass_kg[a.node] + a.machine_kg),
+                        stiffness_of(a.spring_y_N_per_m) / mass_kg[a.node]});
   }
   return std::sqrt(largest);
 }

@@ -15,7 +15,7 @@ namespace slipfront::boundary {
 
 /// What a loading machine pulls of a body's boundary by springs: at each node the force force_N - k u. It is
 /// that of the equilibrium at the start, and force_N grows as the machine moves on along x; where k is 0 it
-/// stays.
+/// stays. Between spring and node a mass of the machine moves along x with the node.
 class MachineSprings {
  public:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
@@ -33,6 +33,8 @@ class MachineSprings {
   solid::Pair force(std::size_t k, solid::Pair u_m) const {
     return {force_N_.x[k] - stiffness_.x[k] * u_m.x, force_N_.y[k] - stiffness_.y[k] * u_m.y};
   }
+  /// Per unit thickness.
+  double mass_kg(std::size_t k) const { return mass_kg_[k]; }
   /// The machine moves on by a step of the node, which has gone from one velocity to the other under a force.
   void move(std::size_t k, double dt_s, solid::Pair force_N, solid::Pair before, solid::Pair after,
             record::Energies& works);
@@ -47,7 +49,8 @@ class MachineSprings {
   solid::BlockRows rows_;         ///< of K
   solid::Field has_spring_;       ///< 1 or 0
   solid::Field stiffness_;        ///< N/m per unit thickness
-  solid::Field force_N_;          ///< where u is 0
+  std::vector<double> mass_kg_;
+  solid::Field force_N_;  ///< where u is 0
   std::vector<double> speed_x_m_per_s_;
 };
 

@@ -82,7 +82,9 @@ void add_steps(const Problem& problem, const advice::Info& info, Listing& list) 
                          info.needs.slow_bytes * 1e-9));
   const auto& machine = problem.above().machine;
   if (std::isfinite(machine.shear_stiffness_Pa_per_m))
-    list.add("machine along x", fmt::format("{:g} Pa/m", machine.shear_stiffness_Pa_per_m));
+    list.add("machine along x",
+             fmt::format("{:g} Pa/m", machine.shear_stiffness_Pa_per_m) +
+                 (machine.mass_kg_per_m2 > 0 ? fmt::format(", {:g} kg/m2", machine.mass_kg_per_m2) : ""));
   if (std::isfinite(machine.normal_stiffness_Pa_per_m))
     list.add("machine downwards", machine.normal_stiffness_Pa_per_m > 0
                                       ? fmt::format("{:g} Pa/m", machine.normal_stiffness_Pa_per_m)

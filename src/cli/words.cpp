@@ -63,6 +63,8 @@ std::string trigger(const Problem& problem) {
       return fmt::format("shear raised over {}, to {:.4g} times the strength", zone, t.amount);
     case interface::TriggerForm::weakened:
       return fmt::format("weakened over {}", zone);
+    case interface::TriggerForm::unloaded:
+      return fmt::format("{:.4g} of the pressure taken away over {}", t.amount, zone);
   }
   return {};
 }
@@ -83,7 +85,9 @@ std::string event(const Problem& problem) {
       return "triggered at the right edge: " + trigger(problem);
     case EventKind::nucleation:
       return fmt::format("{} over {} around x = {}",
-                         problem.start.overstresses() ? "overstressed" : problem.start.weakening_form(),
+                         problem.start.overstresses()    ? "overstressed"
+                         : problem.start.unloads_patch() ? "unloaded"
+                                                         : problem.start.weakening_form(),
                          engineering(n.length_m(), "m"), engineering(n.x_m, "m"));
   }
   return {};

@@ -4,10 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
+#include <numbers>
 #include <utility>
 
 #include "input/entries.hpp"
+#include "solid/material.hpp"
 
 namespace slipfront::input {
 namespace {
@@ -95,12 +98,15 @@ DefaultRule l_star_rule(const Scale& width) {
   return rule;
 }
 
-/// Longest period of shear waves that stand between the interface and the edge that is held.
+/// Longest period of shear waves that stand between the interface and the edge that is held, or of the
+/// machine's mass on the block while that sticks.
 double longest_period_s(const Case& config) {
   constexpr double quarter_waves = 4;
   double height_m = config.plate.height_m;
+  const double stiffness_Pa_per_m = solid::shear_modulus_Pa(config.material) / height_m;
+  const double swing_s = 2 * std::numbers::pi * std::sqrt(config.machine.mass_kg_per_m2 / stiffness_Pa_per_m);
   if (has_base_body(config)) height_m = std::max(height_m, config.base.plate.height_m);
-  return quarter_waves * height_m / c_S_m_per_s(config);
+  return std::max(quarter_waves * height_m / c_S_m_per_s(config), swing_s);
 }
 
 /// Under a law that never sticks slip may speed up for long before a front begins, and where friction rises
@@ -110,7 +116,9 @@ DefaultRule quiet_time_rule(const Scale& crossing) {
   auto rule = multiple_of(crossing, "time.quiet_s");
   rule.text +=
       "; `inf` under a friction law with a state or that rises with the slip rate; in a sequence "
-      "4 height_m / c_S, with the higher body's height";
+      "4 height_m / c_S, with the higher body's height, or the longer period of the machine's mass on a "
+      "block "
+      "that sticks";
   rule.value = [share = rule.value](const Case& c) -> Value {
     if (is_sequence(c)) return longest_period_s(c);
     return c.friction.never_sticks() || strengthens(c.friction) ? Value(infinity) : share(c);

@@ -302,6 +302,10 @@ Condition overstressed() {
   return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
           [](const Case& c) { return start_of(c).overstresses(); }};
 }
+Condition unloaded_patch() {
+  return {Message("{} = nucleation and {} = unloaded", Key("event.kind"), Key("nucleation.form")),
+          [](const Case& c) { return start_of(c).unloads_patch(); }};
+}
 Condition direct() {
   return {Message("{} = direct", Key("loading.method")),
           [](const Case& c) { return c.loading.method == LoadingMethod::direct; }};
@@ -334,17 +338,14 @@ Condition at_edge() {
   return {Message("{} = left or right", Key("event.kind")),
           [](const Case& c) { return is_at_edge(c.event); }};
 }
-Condition pushed() {
-  return {
-      Message("{} = left or right and {} = added or raised", Key("event.kind"), Key("event.trigger_form")),
-      [](const Case& c) { return start_of(c).pushes_edge(); }};
-}
 Condition pushed_in_form(TriggerForm form, const char* word) {
   return {Message("{} = left or right and {} = {}", Key("event.kind"), Key("event.trigger_form"), word),
           [form](const Case& c) { return is_at_edge(c.event) && c.trigger.form == form; }};
 }
 Condition started_by_force() {
-  return {Message("{}, or {}", pushed().setting, overstressed().setting),
+  return {Message("{} = left or right and {} other than weakened, or {} = nucleation and {} = overstress or "
+                  "unloaded",
+                  Key("event.kind"), Key("event.trigger_form"), Key("event.kind"), Key("nucleation.form")),
           [](const Case& c) { return start_of(c).is_by_force(); }};
 }
 Condition with_table() {
@@ -526,6 +527,10 @@ void add_machine(Entries& all) {
               "stiffness of the loading machine along x, in series with the top edge or the pusher: mean "
               "stress on that edge, or under the pusher, per metre of the machine's motion; inf: rigid");
   loading.add(
+      "mass_kg_per_m2", &boundary::Machine::mass_kg_per_m2, at_least(0),
+      "mass of the machine that moves along x with the top edge or the pusher, behind the spring, over "
+      "the same area; it counts in events alone");
+  loading.add(
       "normal_stiffness_Pa_per_m", &boundary::Machine::normal_stiffness_Pa_per_m, at_least_or_infinite(0),
       "the same downwards, mean stress on the top edge, once that is tilted; 0: a dead load, inf: the "
       "edge stays at its height");
@@ -616,9 +621,14 @@ void add_event(Entries& all) {
   trigger.only_with = at_edge();
   trigger.word(
       "trigger_form", &Trigger::form,
-      {{"added", TriggerForm::added}, {"raised", TriggerForm::raised}, {"weakened", TriggerForm::weakened}},
+      {{"added", TriggerForm::added},
+       {"raised", TriggerForm::raised},
+       {"weakened", TriggerForm::weakened},
+       {"unloaded", TriggerForm::unloaded}},
       "tangential traction added, a multiple of what is missing to the strength, or raised to a multiple of "
-      "the strength, both in the direction in which the zone is loaded; or mu = mu_k from the start");
+      "the strength, both in the direction in which the zone is loaded; or mu = mu_k from the start; or "
+      "pressure taken "
+      "away");
   trigger.add("trigger_zone_m", &Trigger::zone_m, above(0),
               "length of the trigger zone, inward from the outermost node in contact");
   trigger.only_with = pushed_in_form(TriggerForm::added, "added");
@@ -627,6 +637,11 @@ void add_event(Entries& all) {
   trigger.only_with = pushed_in_form(TriggerForm::raised, "raised");
   trigger.add("trigger_over_strength", &Trigger::amount, at_least(0),
               "the traction to which t_s is raised over the strength, mu_s p_s: 1 just reaches it");
+  trigger.only_with = pushed_in_form(TriggerForm::unloaded, "unloaded");
+  trigger
+      .add("trigger_unloading", &Trigger::amount, {0, 1, true, false},
+           "the pressure that is taken away over p_s; 1: all of it")
+      .has_to_be_set = true;
   trigger.only_with = started_by_force();
   trigger.add("trigger_ramp_s", &Trigger::ramp_s, at_least(0), "time over which the trigger rises");
   trigger.word(
@@ -640,10 +655,12 @@ void add_event(Entries& all) {
       "form", &Nucleation::form,
       {{"weakened", NucleationForm::weakened},
        {"forced", NucleationForm::forced},
-       {"overstress", NucleationForm::overstress}},
+       {"overstress", NucleationForm::overstress},
+       {"unloaded", NucleationForm::unloaded}},
       "patch with a profile B: mu = mu_k + (1 - B) (mu of the law - mu_k); the same in time from its "
       "centre, mu of the law but at most mu_s - f B (mu_s - mu_k), f from 0 to 1; or an added "
-      "tangential traction, with the trigger's ramp and duration");
+      "tangential traction, with the trigger's ramp and duration; or pressure taken away, as by a wire that "
+      "bursts, with the same");
   nucleation.add("x_m", &Nucleation::x_m, any(), "centre of the patch, from the plate's left edge");
   nucleation.word("profile", &Nucleation::profile,
                   {{"tapered", NucleationProfile::tapered}, {"smooth", NucleationProfile::smooth}},
@@ -665,6 +682,9 @@ void add_event(Entries& all) {
       .has_to_be_set = true;
   nucleation.only_with = overstressed();
   nucleation.add("overstress_Pa", &Nucleation::overstress_Pa, any(), "added tangential traction where B = 1");
+  nucleation.only_with = unloaded_patch();
+  nucleation.add("unloading_Pa", &Nucleation::unloading_Pa, above(0),
+                 "pressure that is taken away where B = 1; where it is more than there is, contact opens");
 }
 
 void add_sequence(Entries& all) {
@@ -815,9 +835,9 @@ std::string describe(const Range& range, const std::string& unit) {
 
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
-      {"m", 1e-12, 1e6},     {"s", 1e-15, 1e12},  {"Pa", 1e-6, 1e15},     {"kg/m3", 1e-6, 1e6},
-      {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6}, {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18},
-      {"Pa/m", 1e-6, 1e24},  {"", 1e-18, 1e9}};
+      {"m", 1e-12, 1e6},     {"s", 1e-15, 1e12},    {"Pa", 1e-6, 1e15},  {"kg/m3", 1e-6, 1e6},
+      {"kg/m2", 1e-9, 1e12}, {"Pa/s", 1e-12, 1e18}, {"m/s", 1e-30, 1e6}, {"m2/s2", 1e-12, 1e12},
+      {"N/m", 1e-12, 1e18},  {"Pa/m", 1e-6, 1e24},  {"", 1e-18, 1e9}};
   return all;
 }
 

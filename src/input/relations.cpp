@@ -413,6 +413,9 @@ void check_pusher(const Case& config) {
 
 void check_machine(const Case& config) {
   const auto& machine = config.machine;
+  if (machine.mass_kg_per_m2 > 0 && machine.shear_stiffness_Pa_per_m == infinity)
+    throw UserError("{} moves behind a spring; set {} as well", Key("loading.mass_kg_per_m2"),
+                    Key("loading.shear_stiffness_Pa_per_m"));
   if (machine.is_rigid()) return;
   // Beyond this a spring would set the time step: its frequency on a node of the edge that of the elements.
   const double h_m = config.plate.element_size_m * std::pow(2, config.plate.coarsenings);

@@ -13,6 +13,7 @@ enum class NucleationForm {
   weakened,    ///< its friction falls to mu_k for good: Interface::strength_fraction = 1 - B(x)
   forced,      ///< the same in time, from its centre at a speed, see Interface::is_time_weakening
   overstress,  ///< an external traction overstress_Pa B(x) along +x, times the trigger's ramp in time
+  unloaded,    ///< the same of unloading_Pa, which parts the bodies
 };
 
 /// B(x) of a nucleation patch, r = |x - x_m|, R = half_length_m.
@@ -30,6 +31,7 @@ struct Nucleation {
   double half_length_m = 5e-3;
   double taper_m = 2.5e-3;
   double overstress_Pa = 1e6;
+  double unloading_Pa = 1e6;
   double front_speed_m_per_s = 600;
   double weakening_time_s = 1e-6;
 

@@ -26,6 +26,7 @@ enum class TriggerForm {
   added,     ///< an external traction amount * (mu_s p_s - t_s)
   raised,    ///< one that raises t_s to amount * mu_s p_s
   weakened,  ///< its friction is mu_k from the start: Interface::strength_fraction = 0
+  unloaded,  ///< an external traction amount * p_s that parts the bodies
 };
 
 /// How a trigger's traction grows in time, to its full size at T = ramp_s.
@@ -34,9 +35,9 @@ enum class Ramp {
   smooth,  ///< exp[(t - T)^2/(t (t - 2 T))]: all derivatives are continuous (SCEC TPV101)
 };
 
-/// A zone next to an edge of contact. The traction of `added` and `raised` is an external force on the plate,
-/// not part of the reported t, times a ramp in time. It acts, and t_s counts, in the direction in which the
-/// zone as a whole is loaded, +x for none; where it would lower t_s it is left out.
+/// A zone next to an edge of contact. The tractions of the forms but `weakened` are external forces on the
+/// plate, not part of the reported t and p, times a ramp in time. Along x it acts, and t_s counts, in the
+/// direction in which the zone as a whole is loaded, +x for none; where it would lower t_s it is left out.
 struct Trigger {
   TriggerForm form = TriggerForm::added;
   double zone_m = 5e-3;  ///< measured inward from the outermost node in contact

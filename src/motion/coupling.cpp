@@ -128,7 +128,7 @@ void Coupling::set_loads(Loads loads) {
   trigger_nodes_.clear();
   weakening_nodes_.clear();
   for (std::size_t i = 0; i < interface_.size(); ++i) {
-    if (loads_.trigger_force_N_per_m[i] != 0) trigger_nodes_.push_back(i);
+    if (loads_.trigger_force_N_per_m[i] != 0 || unloading_N_per_m(i) != 0) trigger_nodes_.push_back(i);
     if (!loads_.weakens_at_s.empty() && loads_.strength_fraction[i] < 1) weakening_nodes_.push_back(i);
   }
   weaken(0);
@@ -240,7 +240,10 @@ void Coupling::add_loads(Side& side, double dt_s, double impulse_s) {
   const auto [v_x, v_y, v_x_before, v_y_before] = velocities(side);
   const auto& mass = side.body.side->mass_kg;
   const double sign = side.sign;
-  for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * loads_.trigger_force_N_per_m[i] / mass[i];
+  for (const auto i : trigger_nodes_) {
+    v_x[i] += sign * impulse_s * loads_.trigger_force_N_per_m[i] / mass[i];
+    v_y[i] += impulse_s * unloading_N_per_m(i) / mass[i];
+  }
   const double growth_t_Pa = prestress_growth_t_Pa_, growth_p_Pa = prestress_growth_p_Pa_;
   for (std::size_t i = 0; i < loads_.prestress_t_Pa.size(); ++i) {
     const double per_pressure = dt_s * tributary_m_[i] / mass[i];
@@ -348,8 +351,9 @@ void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energie
          (loads_.prestress_p_Pa[i] + prestress_growth_p_Pa_) * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
   for (const auto i : trigger_nodes_)
     if (is_own(i))
-      works.trigger_work +=
-          0.5 * impulse_s * loads_.trigger_force_N_per_m[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+      works.trigger_work += 0.5 * impulse_s *
+                            (loads_.trigger_force_N_per_m[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]) +
+                             unloading_N_per_m(i) * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
 }
 
 record::History Coupling::interface_row(double time_s) const {

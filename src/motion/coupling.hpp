@@ -27,6 +27,8 @@ struct Loads {
   /// External forces along x, N per unit thickness, scaled in time by the trigger's ramp; those on a body
   /// below are opposite.
   std::vector<double> trigger_force_N_per_m = {};
+  /// The same along y, which part the bodies.
+  std::vector<double> unloading_N_per_m = {};
   interface::Trigger trigger = {};
   std::vector<double> strength_fraction = {};  ///< weakens nodes for good, see Interface::strength_fraction
   /// When they are forced to weaken, linearly over the time; or empty: at once.
@@ -43,13 +45,13 @@ struct Loads {
   /// The arrays with a value for each interface node, but for law_states.
   template <class State>
   static auto arrays(State& l) {
-    return std::array{&l.strength_fraction, &l.trigger_force_N_per_m, &l.prestress_t_Pa, &l.prestress_p_Pa,
-                      &l.weakens_at_s};
+    return std::array{&l.strength_fraction, &l.trigger_force_N_per_m, &l.unloading_N_per_m,
+                      &l.prestress_t_Pa,    &l.prestress_p_Pa,        &l.weakens_at_s};
   }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(prestress_t_Pa, prestress_p_Pa, trigger_force_N_per_m, trigger, strength_fraction, weakens_at_s,
-            weakening_time_s, prestress_rate, law_states, light_Pa);
+    archive(prestress_t_Pa, prestress_p_Pa, trigger_force_N_per_m, unloading_N_per_m, trigger,
+            strength_fraction, weakens_at_s, weakening_time_s, prestress_rate, law_states, light_Pa);
   }
 };
 
@@ -166,6 +168,10 @@ class Coupling {
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see boundary::Dashpot. [nodes]
   /// Relative, of the update under way. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;
+  double unloading_N_per_m(std::size_t i) const {
+    return loads_.unloading_N_per_m.empty() ? 0 : loads_.unloading_N_per_m[i];
+  }
+
   Loads loads_;                               ///< forces and strength_fraction of all nodes
   std::vector<std::size_t> trigger_nodes_;    ///< where the force is not zero
   std::vector<std::size_t> weakening_nodes_;  ///< whose friction falls during the event

@@ -53,7 +53,8 @@ std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<
                                    const PerNode& mu_s) {
   const auto& s = state.tractions;
   std::vector<double> force(s.x_m.size(), 0.0);
-  if (trigger.form == interface::TriggerForm::weakened) return force;
+  if (trigger.form != interface::TriggerForm::added && trigger.form != interface::TriggerForm::raised)
+    return force;
   const auto zone = trigger_zone(state, kind, trigger.zone_m);
   const double direction = load_direction(state, tributary_m, zone);
   for (const auto k : zone)

@@ -68,6 +68,23 @@ std::vector<double> starting_forces_N_per_m(const Problem& problem, const static
   return forces;
 }
 
+/// Forces along y that part the bodies; empty for none. [interface nodes]
+std::vector<double> unloading_N_per_m(const Problem& problem, const statics::Equilibrium& state,
+                                      const mesh::Mesh& mesh, std::span<const double> tributary_m) {
+  const auto& start = problem.start;
+  if (!start.unloads_edge() && !start.unloads_patch()) return {};
+  std::vector<double> forces(tributary_m.size(), 0.0);
+  for (const auto k : motion::trigger_zone(state, start.kind, start.trigger.zone_m))
+    forces[k] = start.trigger.amount * state.tractions.p_s_Pa[k] * tributary_m[k];
+  if (start.unloads_patch()) {
+    const auto B = patch(start.nucleation, mesh);
+    for (std::size_t k = 0; k < B.size(); ++k)
+      if (state.contact[k] != statics::Contact::open)
+        forces[k] = start.nucleation.unloading_Pa * B[k] * tributary_m[k];
+  }
+  return forces;
+}
+
 /// Interface::strength_fraction of an event that begins with a weakened patch or zone; empty for others.
 std::vector<double> intact_shares(const Problem& problem, const statics::Equilibrium& state,
                                   const mesh::Mesh& mesh) {
@@ -147,6 +164,7 @@ motion::Loads event_loads(const Problem& problem, const statics::Equilibrium& st
   loads.trigger = problem.start.trigger;
   loads.trigger_force_N_per_m = starting_forces_N_per_m(
       problem, state, strength_over_pressure(problem, state.tractions.x_m, healed), mesh, tributary_m);
+  loads.unloading_N_per_m = unloading_N_per_m(problem, state, mesh, tributary_m);
   loads.strength_fraction = intact_shares(problem, state, mesh);
   if (problem.start.is_forced()) {
     for (const auto n : mesh.interface_nodes)

@@ -516,9 +516,10 @@ double Statics::machine_energy_J_per_m(const Equilibrium& state) const {
   };
   const auto &u = state.u_m, &u_tilted = tilted_.u_m, &force_N = tilted_top_.tilt_force_N;
   if (force_N.size() == 0) return 0;
-  for (const auto& [n, side_m, top_m, spring_x, spring_y] : boundary_.nodes) {
-    add(spring_x, force_N.x[n], state.shear_m - (u.x[n] - u_tilted.x[n]));
-    add(spring_y, force_N.y[n], -(u.y[n] - u_tilted.y[n]));
+  for (const auto& edge : boundary_.nodes) {
+    const auto n = edge.node;
+    add(edge.spring_x_N_per_m, force_N.x[n], state.shear_m - (u.x[n] - u_tilted.x[n]));
+    add(edge.spring_y_N_per_m, force_N.y[n], -(u.y[n] - u_tilted.y[n]));
   }
   return energy;
 }

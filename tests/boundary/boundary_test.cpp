@@ -30,19 +30,21 @@ TEST(Boundary, IsPrescribedAtTheFarEdgeUnderARigidMachine) {
 TEST(Boundary, SharesTheStiffnessOfItsMachineAmongTheNodes) {
   const auto mesh = graded_plate();
   for (const Pusher& pusher : {Pusher{}, Pusher{2e-3, 0.02}, Pusher{2e-3, 9e-3}}) {
-    const auto all = make_boundary(mesh, {3e9, 5e9, pusher});
+    const auto all = make_boundary(mesh, {3e9, 5e9, pusher, 40});
     EXPECT_TRUE(all.driven.empty());
-    double x_N_per_m = 0, y_N_per_m = 0;
+    double x_N_per_m = 0, y_N_per_m = 0, machine_kg = 0;
     std::vector<mesh::Node> along_x, along_y;
     for (const auto& a : all.nodes) {
       x_N_per_m += a.spring_x_N_per_m.value_or(0);
       y_N_per_m += a.spring_y_N_per_m.value_or(0);
+      machine_kg += a.machine_kg;
       if (a.spring_x_N_per_m) along_x.push_back(a.node);
       if (a.spring_y_N_per_m) along_y.push_back(a.node);
     }
     const double length_m = pusher.is_there() ? pusher.to_m - pusher.from_m : 0.04;
     EXPECT_NEAR(x_N_per_m, 3e9 * length_m, 3e9 * length_m * 100 * eps);
     EXPECT_NEAR(y_N_per_m, 5e9 * 0.04, 5e9 * 0.04 * 100 * eps);
+    EXPECT_NEAR(machine_kg, 40 * length_m, 40 * length_m * 100 * eps);
     EXPECT_EQ(along_x, pusher.is_there() ? all.pushed : mesh.far_edge_nodes);
     EXPECT_EQ(along_y, mesh.far_edge_nodes);
     std::ranges::sort(along_x);

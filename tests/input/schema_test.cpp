@@ -60,8 +60,8 @@ auto members(const mesh::Plate& plate) {
   return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
 }
 auto members(const boundary::Machine& machine) {
-  const auto& [shear_Pa, normal_Pa, pusher] = machine;
-  return std::tuple(shear_Pa, normal_Pa, pusher.from_m, pusher.to_m);
+  const auto& [shear_Pa, normal_Pa, pusher, mass_kg_per_m2] = machine;
+  return std::tuple(shear_Pa, normal_Pa, pusher.from_m, pusher.to_m, mass_kg_per_m2);
 }
 auto members(const Base& base) {
   const auto& [kind, plate, material] = base;
@@ -95,7 +95,7 @@ auto members(const Case& c) {
   return std::tuple(title, members(plate), members<5>(material), members(machine), members(base),
                     members<13>(loading), members(prestress), members(friction), members(friction_along_x),
                     tip, members<4>(regularisation), contact, event, members<6>(trigger),
-                    members<8>(nucleation), members<7>(sequence), members<9>(time), members<7>(fronts),
+                    members<9>(nucleation), members<7>(sequence), members<9>(time), members<7>(fronts),
                     members<6>(output), members<4>(probes));
 }
 
@@ -361,7 +361,7 @@ TEST(Schema, ForcesReadBackFromToml) {
 TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
   const std::string nucleated = to_toml(changed_prestress());
   const Case left = parsed(nucleated, {{"event.kind", "left"}});
-  EXPECT_TRUE(members<8>(left.nucleation) == members<8>(Case{}.nucleation));
+  EXPECT_TRUE(members<9>(left.nucleation) == members<9>(Case{}.nucleation));
   EXPECT_EQ(left.event, interface::EventKind::left);
   const Case table = parsed(nucleated, {{"prestress.file", "t.csv"}});
   EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);

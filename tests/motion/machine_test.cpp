@@ -26,7 +26,11 @@ struct Sample {
   boundary::Machine machine;
 };
 
+constexpr double kg_per_m2 = 50;  // four times the plate's
+
 const Sample samples[] = {{"Springs", {5e12, 1e13}},
+                          {"Mass", {5e12, 1e13, {}, kg_per_m2}},
+                          {"PushedByMass", {2.5e13, 0, {1e-3, 5e-3}, kg_per_m2}},
                           {"DeadLoad", {rigid, 0}},
                           {"PushedBySpring", {2.5e13, rigid, {1e-3, 5e-3}}},
                           {"PushedUnderDeadLoad", {2.5e13, 0, {1e-3, 5e-3}}}};
@@ -82,17 +86,21 @@ TEST(Machine, LetsABlockSwingOnItsSpring) {
   constexpr double K_Pa = 4e6;
   const auto mesh = mesh::make_plate(support::plate_of(0.02, 0.01, 1e-3));
   const solid::Material material{.stiffness_damping_s = 0};
-  const double omega = std::sqrt(K_Pa / (material.density_kg_per_m3 * 0.02 * 0.01));
-  solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
-  std::ranges::fill(u.y, 1e-3);  // in the air
-  std::ranges::fill(v.x, 2.0);   // beyond the machine by 1 m/s
-  const std::vector<BodySource> body = {{mesh, material, nullptr, nullptr, {K_Pa / 0.02, rigid}}};
-  UnderWay way({body, {interface::Coulomb{0}}, support::one_substep()}, support::in_flight(mesh, u, v), 1);
-  way.advance_to(0.8 * 2 * std::numbers::pi / omega);
-  const double end_s = way.stepper.time_s();
-  // The spring is at one edge of the block, which is a spring, too: K H/(G W), 1/1000 of this one.
-  for (const double u_x_m : way.stepper.u_m().x)
-    EXPECT_NEAR(u_x_m - end_s, std::sin(omega * end_s) / omega, 5e-3 / omega);
+  const double block_kg_per_m2 = material.density_kg_per_m3 * 0.01;
+  for (const double mass_kg_per_m2 : {0.0, 3 * block_kg_per_m2}) {
+    const double omega = std::sqrt(K_Pa / (0.02 * (block_kg_per_m2 + mass_kg_per_m2)));
+    solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+    std::ranges::fill(u.y, 1e-3);  // in the air
+    std::ranges::fill(v.x, 2.0);   // beyond the machine by 1 m/s
+    const boundary::Machine machine{K_Pa / 0.02, rigid, {}, mass_kg_per_m2};
+    const std::vector<BodySource> body = {{mesh, material, nullptr, nullptr, machine}};
+    UnderWay way({body, {interface::Coulomb{0}}, support::one_substep()}, support::in_flight(mesh, u, v), 1);
+    way.advance_to(0.8 * 2 * std::numbers::pi / omega);
+    const double end_s = way.stepper.time_s();
+    // The spring is at one edge of the block, which is a spring, too: K H/(G W), 1/1000 of this one.
+    for (const double u_x_m : way.stepper.u_m().x)
+      EXPECT_NEAR(u_x_m - end_s, std::sin(omega * end_s) / omega, 5e-3 / omega);
+  }
 }
 
 TEST(Machine, ASpringTakesItsShareOfTheStableStep) {

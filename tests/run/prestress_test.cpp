@@ -222,6 +222,44 @@ TEST(Nucleation, OverstressIsAnExternalForceWithTheTriggersRamp) {
   EXPECT_GT(slips.event.energies.back().trigger_work, 0);
 }
 
+TEST(Nucleation, AWireTakesPressureAway) {
+  auto c = problem_a(1e-3);
+  c.regularisation = {};
+  c.nucleation.form = NucleationForm::unloaded;
+  c.nucleation.unloading_Pa = 1e6;  // to 4 MPa, whose strength of 2.4 MPa is above t: all stick
+  c.trigger.ramp_s = 5e-6;
+  c.time.end_s = 20e-6;
+  for (const auto base : {input::BaseKind::rigid, input::BaseKind::body}) {
+    c.base.kind = base;
+    c.base.plate = c.plate;
+    c.base.material = c.material;
+    c.nucleation.unloading_Pa = 1e6;
+    const auto stuck = run_case(c);
+    EXPECT_TRUE(stuck.event.record.onsets.empty());
+    const auto h = test::history_of(stuck);
+    const std::size_t n = h.x_m.size();
+    for (std::size_t k = 0; k < h.time_s.size(); ++k) {
+      const double factor = std::min(1.0, h.time_s[k] / 5e-6);
+      EXPECT_NEAR(h.p_Pa[k * n + n / 2], 5e6 - 1e6 * factor, 1e-3);
+      EXPECT_NEAR(h.p_Pa[k * n + n / 2 + 25], 5e6 - 0.5e6 * factor, 1e-3);
+      EXPECT_NEAR(h.p_Pa[k * n + n / 2 + 31], 5e6, 1e-3);
+      EXPECT_NEAR(h.t_Pa[k * n + n / 2], 2.1e6, 1e-3);
+    }
+    EXPECT_NEAR(stuck.event.energies.back().trigger_work, 0, 1e-12);
+    // The strength falls to t at p = 3.5 MPa, after three quarters of the ramp.
+    c.nucleation.unloading_Pa = 2e6;
+    const auto slips = run_case(c);
+    ASSERT_FALSE(slips.event.record.onsets.empty());
+    EXPECT_NEAR(slips.event.record.onsets.front().time_s, 0.75 * 5e-6, 2e-8);
+    // More than there is: the contact opens, the wire does work, and all of it is somewhere.
+    c.nucleation.unloading_Pa = 7e6;
+    const auto opens = run_case(c);
+    const auto &first = opens.event.energies.front(), &last = opens.event.energies.back();
+    EXPECT_GT(last.trigger_work, 0);
+    EXPECT_NEAR(record::imbalance_J_per_m(last, first), 0, 1e-11 * last.trigger_work);
+  }
+}
+
 TEST(Nucleation, StartsAnEventOfTheTiltedPlateToo) {
   auto c = test::coarse_case(EventKind::nucleation);
   c.nucleation = {.x_m = 0.1, .half_length_m = 5e-3, .taper_m = 5e-3};
@@ -312,6 +350,21 @@ TEST(Trigger, MirroredLoadGivesTheMirroredEvent) {
     const auto work = a.event.energies.back().trigger_work;
     EXPECT_EQ(work > 0, form != interface::TriggerForm::weakened);
     EXPECT_NEAR(b.event.energies.back().trigger_work, work, 1e-9 * work);
+  }
+}
+
+TEST(Trigger, TakesAShareOfThePressureAwayAndGivesItBack) {
+  auto c = triggered(EventKind::left, 0.1e6, interface::TriggerForm::unloaded);
+  c.trigger.amount = 0.25;
+  c.trigger.duration_s = 20e-6;
+  const auto result = run_case(c);
+  EXPECT_TRUE(result.event.record.onsets.empty());
+  const auto h = test::history_of(result);
+  const std::size_t n = h.x_m.size();
+  for (std::size_t k = 0; k < h.time_s.size(); ++k) {
+    const double factor = h.time_s[k] < 20e-6 ? std::min(1.0, h.time_s[k] / 2e-6) : 0;
+    EXPECT_NEAR(h.p_Pa[k * n + 3], 1e6 * (1 - 0.25 * factor), 1e-3) << h.time_s[k];
+    EXPECT_NEAR(h.p_Pa[k * n + n - 3], 1e6, 1e-3);
   }
 }
 

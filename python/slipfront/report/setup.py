@@ -290,6 +290,7 @@ def start(run: Opened) -> str:
                 "added": f"shear added, {amount('missing')} times what is missing to {MU_S}p{rise(run)}",
                 "raised": f"shear raised to {amount('strength')} {MU_S}p{rise(run)}",
                 "weakened": f"μ = {MU_K} from the start",
+                "unloaded": f"{run.entry('event', 'trigger_unloading')} p taken away{rise(run)}",
             }
             zone = si(run, "event", "trigger_zone_m")
             return f"trigger over {zone} at the {side} edge: {forms.get(str(form), words(form))}"
@@ -300,6 +301,8 @@ def start(run: Opened) -> str:
             )
             if run.entry("nucleation", "form") == "overstress":
                 return f"{patch}: shear of {si(run, 'nucleation', 'overstress_Pa')} added{rise(run)}"
+            if run.entry("nucleation", "form") == "unloaded":
+                return f"{patch}: pressure of {si(run, 'nucleation', 'unloading_Pa')} taken away{rise(run)}"
             return f"{patch}: μ = {MU_K} from the start"
         case kind, _:
             return words(kind)

@@ -45,7 +45,9 @@ const char* strongest_load(const record::Energies& now, const record::Energies& 
   };
   const std::array<Load, 4> loads = {{
       {std::abs(now.trigger_work),
-       "event.trigger_over_missing or trigger_over_strength, or nucleation.overstress_Pa of a patch"},
+       "event.trigger_over_missing, trigger_over_strength or trigger_unloading, or nucleation.overstress_Pa "
+       "or "
+       "unloading_Pa of a patch"},
       {std::abs(now.prestress_work), "prestress.t_Pa, or the tractions in prestress.file"},
       {std::abs(now.far_edge_work), "loading.shear_speed_m_per_s"},
       {start.stored(), "loading.tilt_left_m and loading.tilt_right_m, or the force given instead"},
