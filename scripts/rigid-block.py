@@ -33,7 +33,7 @@ class Cycles:
     """Events in their order. Arrays: [events]"""
 
     begin_s: np.ndarray
-    lasts_s: np.ndarray  # of slip
+    lasts_s: np.ndarray  # of slip that is as fast as a tip counts
     before: np.ndarray  # force over normal force where it begins
     after: np.ndarray  # at rest
     fastest: np.ndarray  # slip rate, m/s
@@ -193,13 +193,28 @@ def measured(t: np.ndarray, force: np.ndarray, v: np.ndarray) -> Cycles:
     down = [k + int(np.argmax(v[k + 1 :] < 0.5 * THRESHOLD)) for k in up]
     return Cycles(
         t[up],
-        t[down] - t[up],
+        np.array([lasts_s(t[a : b + 1], v[a : b + 1]) for a, b in zip(up, down, strict=True)]),
         force[up],
         np.array([force[k] for k in down]),
         np.array([v[a : b + 1].max() for a, b in zip(up, down, strict=True)]),
         t,
         force,
     )
+
+
+def lasts_s(t: np.ndarray, v: np.ndarray) -> float:
+    """Between the first and the last time at which slip is as fast as a tip counts, as `slip_s` has it."""
+    fast = np.flatnonzero(v >= TIP)
+    if not fast.size:
+        return np.nan
+    first, last = (
+        float(np.interp(np.log(TIP), *ends))
+        for ends in (
+            (np.log(v[fast[0] - 1 : fast[0] + 1]), t[fast[0] - 1 : fast[0] + 1]),
+            (np.log(v[fast[-1] : fast[-1] + 2][::-1]), t[fast[-1] : fast[-1] + 2][::-1]),
+        )
+    )
+    return last - first
 
 
 D_C_M = 0.7e-7
@@ -210,6 +225,7 @@ END_S = 130.0
 
 
 THRESHOLD = 0.1 * A * P_PA / (E_PA / (2 * (1 + NU)) / np.sqrt(E_PA / (2 * (1 + NU) * RHO)))
+TIP = 10 * THRESHOLD
 
 
 @dataclass

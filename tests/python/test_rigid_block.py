@@ -20,15 +20,15 @@ def script():
     sys.path.remove(str(ROOT / "scripts"))
 
 
-@pytest.mark.parametrize("n_states", [1, 2])
-def test_cycles_are_those_of_a_rigid_block(script, tmp_path, n_states):
+@pytest.mark.parametrize(("n_states", "heavy"), [(1, 0), (2, 0), (1, 10)])
+def test_cycles_are_those_of_a_rigid_block(script, tmp_path, n_states, heavy):
     """The block yields by a hundredth of the spring, and slips not quite as one."""
     softness = 0.01
     states = script.one(script.D_C_M) if n_states == 1 else script.TWO
-    cycles = script.program(script.case(softness, states, ""), tmp_path / "out")
-    theory = script.equation(softness, states, script.END_S)
+    cycles = script.program(script.case(softness, states, "", heavy), tmp_path / "out")
+    theory = script.equation(softness, states, script.END_S, heavy)
     found = script.differences(script.Compared("", cycles, theory))
-    assert len(found) == 4
+    assert len(found) == 5
     for name, (value, solution) in found.items():
         assert value == pytest.approx(solution, rel=0.02), name
 
