@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import slipfront
 from common import built
-from package_cases import blocks, write_case
+from package_cases import PLATE, TILT, blocks, results_of, write_case
 from scipy.integrate import quad
 from scipy.special import gammainc
 from slipfront.compare.misfit import Observed
@@ -297,6 +297,33 @@ def test_folders_that_are_refused(place, tmp_path, monkeypatch, capsys):
     assert "holds no fit" in capsys.readouterr().err
     assert called(monkeypatch, place, "--restart", tmp_path, *free()) == 2
     assert "leave out --free" in capsys.readouterr().err
+
+
+def test_events_are_fitted_and_others_predicted(tmp_path, monkeypatch, capsys):
+    """Precursors of the paper's plate, whose intervals and slip tell mu_k."""
+    case = f"""{PLATE}{TILT}plate.element_size_m = 5e-3
+friction.mu_k = 0.9
+event.kind = "spontaneous"
+sequence.max_events = 8
+"""
+    write_case(tmp_path, case)
+    (tmp_path / "truth").mkdir()
+    truth = slipfront.open(results_of(tmp_path / "truth", case))
+    events, rng = truth.events, np.random.default_rng(7)
+    begin_s = events.begin_s.to_numpy()
+    slip_m = np.tile(events.mean_slip_m.to_numpy(), 2) * (1 + 0.01 * rng.normal(size=16))
+    table = {"begin_s": np.concatenate([begin_s, begin_s + 500]), "slip_m": slip_m}  # twice
+    pd.DataFrame(table).to_csv(tmp_path / "events.csv", index=False)
+    arguments = ("case.toml", "events.csv", "--free", "friction.mu_k=0.7:1.1", "--skip-events", 1)
+    chosen = ("--fit-events", "2-8", "--predict-events", "10-16")
+    assert called(monkeypatch, tmp_path, *arguments, *chosen, "-o", "out", "--most", 24) == 0
+    printed = capsys.readouterr().out
+    assert "predicted: events.csv, events 10-16: misfit" in printed
+    found = json.loads((tmp_path / "out/fit.json").read_text())
+    assert found["predicted"] == ["events.csv, events 10-16"]
+    low, high = found["parameters"]["friction.mu_k"]["interval_90"]
+    assert low - (high - low) < 0.9 < high + (high - low)
+    assert list(found["parts"]) == ["events.csv, events 2-8, events"]
 
 
 def test_ends_of_runs_are_data(place, monkeypatch, tmp_path):
