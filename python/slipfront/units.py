@@ -35,7 +35,8 @@ ENDINGS = {
 SYMBOLS = ("mu_s", "mu_k", "d_c", "l_star")  # their underscores are subscripts
 PREFIXED = ("m", "s", "Pa", "Pa/m", "N/m")
 PREFIXES = {"G": 1e-9, "M": 1e-6, "k": 1e-3, "": 1.0, "m": 1e3, "µ": 1e6, "n": 1e9}
-WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "kg/m2": "kg/m²", "m2/s2": "m²/s²", "m2/s": "m²/s", "J/m3": "J/m³", "J/m2": "J/m²"}
+WRITTEN = {"m2": "m²", "kg/m2": "kg/m²", "kg/m3": "kg/m³", "m2/s2": "m²/s²", "m2/s": "m²/s"}
+WRITTEN |= {"J/m3": "J/m³", "J/m2": "J/m²"}
 WRITTEN |= {"J m-1": "J/m", "J m-2": "J/m²"}  # of NetCDF
 
 #: What columns of tables and arrays hold.

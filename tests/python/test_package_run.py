@@ -552,6 +552,16 @@ pusher_from_m = 8e-3
 pusher_to_m = 16e-3
 shear_stiffness_Pa_per_m = 1.25e11
 normal_stiffness_Pa_per_m = 0.0
+mass_kg_per_m2 = 20.0
+""",
+    "unloaded edge": UNIFORM.replace(
+        'event.kind = "left"', 'event = {kind = "left", trigger_form = "unloaded", trigger_unloading = 0.5}'
+    ),
+    "unloaded patch": NUCLEATED
+    + """
+[nucleation]
+form = "unloaded"
+unloading_Pa = 5e5
 """,
     "slow slip": """
 plate = {width_m = 0.2, height_m = 0.1, element_size_m = 4e-3}
