@@ -218,6 +218,10 @@ laboratory: ready module  ## records beside runs: renews pictures of docs/record
 	PYTHONPATH=python $(PYTHON) scripts/laboratory.py --program $(abspath $(PROGRAM))
 	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/gauge-table.py build/gauge-table
 
+.PHONY: fit-twins
+fit-twins: ready module  ## fits to forty records whose truth is known, table of docs/fit.md: half an hour
+	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/fit-twins.py
+
 examples: ready  ## the worked cases of examples/, into results-examples/, and their pictures in docs/figures
 	PYTHONPATH=python $(PYTHON) scripts/run-examples.py $(PROGRAM) $(RESULTS)-examples docs/figures
 

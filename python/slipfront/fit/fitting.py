@@ -62,15 +62,7 @@ class Ran:
     share: np.ndarray
     observed: list[list[Observed]] = field(default_factory=list)  # [records][parts]
     why_not: str = ""
-
-    @property
-    def n_mismatched(self) -> int:
-        """Places at which one of record and run has a front and the other has none."""
-        return sum(
-            int((np.isfinite(of.measured) != np.isfinite(of.computed)).sum())
-            for parts in self.observed
-            for of in parts
-        )
+    is_refused: bool = False  # by the program: there is no run
 
 
 @dataclass(frozen=True)
@@ -139,7 +131,7 @@ class Fitting:
         if not fresh:
             return
         points = [point for point, _ in fresh.values()]
-        all_runs = [ran.point for ran in self.ran if not ran.why_not.startswith("refused")]
+        all_runs = [ran.point for ran in self.ran if not ran.is_refused]
         to_check = [p for p in points if not places.is_done(self.folder / RUNS, p)]
         with closing(refused(self.sweep(points), find_program(), to_check, True)) as found:
             why_not = {point.name: told for point, told in found}
@@ -154,7 +146,7 @@ class Fitting:
         for point, share in fresh.values():
             ran = Ran(point, share)
             if point.name in why_not:
-                ran.why_not = f"refused: {why_not[point.name]}"
+                ran.why_not, ran.is_refused = why_not[point.name], True
             else:
                 self.observe(ran)
             self.ran.append(ran)
@@ -176,7 +168,7 @@ class Fitting:
             ran.why_not = str(error)
 
     def resume(self) -> None:
-        """Takes the runs of an earlier call in this folder that are within the ranges."""
+        """Takes the runs of an earlier call in this folder."""
         folder, keys = self.folder / RUNS, self.space.keys
         if not exists(folder / places.DEFINITION):
             return
@@ -187,12 +179,21 @@ class Fitting:
 
     # Likelihood.
 
+    def n_mismatched(self, ran: Ran) -> int:
+        """Places at which one of a fitted record and the run has a front and the other has none."""
+        return sum(
+            int((np.isfinite(of.measured) != np.isfinite(of.computed)).sum())
+            for parts, is_fitted in zip(ran.observed, self.asked.is_fitted, strict=True)
+            for of in parts
+            if is_fitted
+        )
+
     @property
     def usable(self) -> list[Ran]:
-        """Runs that have fronts where the record has them, as far as any has."""
-        compared = [ran for ran in self.ran if not ran.why_not]
-        least = min((ran.n_mismatched for ran in compared), default=0)
-        return [ran for ran in compared if ran.n_mismatched == least]
+        """Runs that have fronts where the records have them, as far as any has."""
+        compared = [(ran, self.n_mismatched(ran)) for ran in self.ran if not ran.why_not]
+        least = min((n for _, n in compared), default=0)
+        return [ran for ran, n in compared if n == least]
 
     def find_parts(self) -> None:
         """Parts of the fitted records, of the values that all usable runs have, with c of the best run."""
@@ -422,10 +423,10 @@ class Fitting:
                 f"{unlike} runs have fronts at other places of the record than the rest: "
                 "their points are ruled out"
             )
-        if usable and usable[0].n_mismatched:
+        if usable and (n := self.n_mismatched(usable[0])):
             told.append(
-                f"{usable[0].n_mismatched} places of the record have no front in any of the runs, or one "
-                "where the record has none: they do not count"
+                f"{n} places of the record have no front in any of the runs, or one where the record has "
+                "none: they do not count"
             )
         return told
 

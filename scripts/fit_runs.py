@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the scripts that try `slipfront fit` share: a fit in a folder, and what its fit.json says."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from shared import DataError
+from slipfront.fit.space import space_of
+
+ROOT = Path(__file__).resolve().parents[1]
+POSTERIOR = "posterior.csv"
+
+
+def fit(
+    case: Path, records: Sequence[Path], free: Mapping[str, str], folder: Path, *options: str
+) -> dict[str, Any]:
+    """fit.json of a fit, which may be there, with `wall_s`. Only what it found is kept of its runs."""
+    told, timed = folder / "fit.json", folder / "wall_s.txt"
+    if not told.exists():
+        words = [str(case), *map(str, records), "-o", str(folder), "-q", *options]
+        words += [word for key, text in free.items() for word in ("--free", f"{key}={text}")]
+        here = os.environ | {"PYTHONPATH": str(ROOT / "python"), "OMP_NUM_THREADS": "1"}
+        begin = time.monotonic()
+        done = subprocess.run(
+            [sys.executable, "-m", "slipfront", "fit", *words], capture_output=True, text=True, env=here
+        )
+        if done.returncode != 0:
+            lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+            raise DataError(f"{folder}: {lines[-1]}")
+        timed.write_text(f"{time.monotonic() - begin:.1f}\n", encoding="utf-8")
+        shutil.rmtree(folder / "runs")
+    found: dict[str, Any] = json.loads(told.read_text(encoding="utf-8"))
+    return found | {"wall_s": float(timed.read_text(encoding="utf-8"))}
+
+
+def share_of_range(found: Mapping[str, Any], key: str, values: Sequence[float]) -> np.ndarray:
+    """Of values of a key, in the logarithm where its range is."""
+    of = found["free"][key]
+    space = space_of({key: f"{of['from']}:{of['to']}" + (":log" if of["is_log"] else "")})
+    return space.shares(np.asarray(values)[:, None])[:, 0]
+
+
+def width(found: Mapping[str, Any], key: str, level: int = 90) -> float:
+    """Of an interval, over the range."""
+    low, high = share_of_range(found, key, found["parameters"][key][f"interval_{level}"])
+    return float(high - low)
