@@ -78,6 +78,7 @@ ONSET_ERROR_S = 0.5e-6  # half a sample of a recorder of 1 MHz
 INTERVAL_S = 1e-6  # of its samples
 NOISE = 0.05  # of a gauge, over the range of its strain
 LEVELS = (90, 68)
+OWN = shutil.ignore_patterns(".sweep.lock")  # a link to it would lock all
 
 
 @dataclass(frozen=True)
@@ -152,7 +153,7 @@ def fit_twin(twin: Twin, folder: Path) -> dict[str, Any]:
     own = folder / f"fit_{twin.number:02d}"
     if not own.exists():
         own.mkdir()
-        shutil.copytree(folder / "first", own / "runs", copy_function=os.link)
+        shutil.copytree(folder / "first", own / "runs", copy_function=os.link, ignore=OWN)
         (own / "request.json").write_text("{}", encoding="utf-8")  # by which the fit knows its folder
     return fit(folder / "case.toml", twin.records, FREE, own, "--workers", "1")
 
