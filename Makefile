@@ -218,9 +218,12 @@ laboratory: ready module  ## records beside runs: renews pictures of docs/record
 	PYTHONPATH=python $(PYTHON) scripts/laboratory.py --program $(abspath $(PROGRAM))
 	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/gauge-table.py build/gauge-table
 
-.PHONY: fit-twins
+.PHONY: fit-twins fit-references
 fit-twins: ready module  ## fits to forty records whose truth is known, table of docs/fit.md: half an hour
 	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/fit-twins.py
+
+fit-references: ready module  ## fits to other codes' solutions, whose values are known, table of docs/fit.md
+	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/fit-references.py
 
 examples: ready  ## the worked cases of examples/, into results-examples/, and their pictures in docs/figures
 	PYTHONPATH=python $(PYTHON) scripts/run-examples.py $(PROGRAM) $(RESULTS)-examples docs/figures

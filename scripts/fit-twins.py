@@ -4,8 +4,6 @@ renews the table of docs/fit.md."""
 
 from __future__ import annotations
 
-import os
-import shutil
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -15,7 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import slipfront
-from fit_runs import POSTERIOR, fit, share_of_range, width
+from fit_runs import POSTERIOR, WORKERS, begin, first_runs, fit, share_of_range, width
 from shared import renew_from_runs, run_case
 from slipfront.compare.onsets import onsets_at
 from slipfront.fit.command import FIRST_A_KEY
@@ -23,12 +21,10 @@ from slipfront.fit.space import space_of
 from slipfront.gauges import gauges_of
 from slipfront.pages import table
 from slipfront.program import find_program
-from slipfront.sweep.definition import Sweep
-from slipfront.sweep.sweeping import How, carry_out
 
 TWINS = 40
-WORKERS = 2  # twins at a time
-CASE = """title = "rupture between equal bodies, beside which twins are fitted"
+LAW = 'law = "slip_weakening"\nmu_s = 0.6\nmu_k = 0.3\nd_c_m = 4e-6\n'
+CASE = f"""title = "rupture between equal bodies, beside which twins are fitted"
 [plate]
 width_m = 0.2
 height_m = 0.05
@@ -51,11 +47,7 @@ method = "prestress"
 t_Pa = 2.2e6
 p_Pa = 5e6
 [friction]
-law = "slip_weakening"
-mu_s = 0.6
-mu_k = 0.3
-d_c_m = 4e-6
-[event]
+{LAW}[event]
 kind = "nucleation"
 [nucleation]
 x_m = 0.06
@@ -78,7 +70,6 @@ ONSET_ERROR_S = 0.5e-6  # half a sample of a recorder of 1 MHz
 INTERVAL_S = 1e-6  # of its samples
 NOISE = 0.05  # of a gauge, over the range of its strain
 LEVELS = (90, 68)
-OWN = shutil.ignore_patterns(".sweep.lock")  # a link to it would lock all
 
 
 @dataclass(frozen=True)
@@ -138,29 +129,15 @@ def twins(count: int, folder: Path) -> list[Twin]:
     return found
 
 
-def first_runs(folder: Path) -> Path:
-    """Those over the whole ranges, which all twins share."""
-    space, runs = space_of(FREE), folder / "first"
-    points = space.points(space.sobol(FIRST_A_KEY * space.n))
-    vary = {key: [point.values[key] for point in points] for key in space.keys}
-    carry_out(
-        Sweep(case_of(folder), vary, {}, combine="zip"), runs, How(WORKERS, quiet=True, has_tables=False)
-    )
-    return runs
-
-
 def fit_twin(twin: Twin, folder: Path) -> dict[str, Any]:
     own = folder / f"fit_{twin.number:02d}"
-    if not own.exists():
-        own.mkdir()
-        shutil.copytree(folder / "first", own / "runs", copy_function=os.link, ignore=OWN)
-        (own / "request.json").write_text("{}", encoding="utf-8")  # by which the fit knows its folder
+    begin(own, folder / "first")
     return fit(folder / "case.toml", twin.records, FREE, own, "--workers", "1")
 
 
 def fit_twins(count: int, folder: Path) -> list[tuple[Twin, dict[str, Any]]]:
     every = twins(count, folder)
-    first_runs(folder)
+    first_runs(folder / "case.toml", FREE, folder / "first")
     with ThreadPoolExecutor(WORKERS) as pool:
         return list(zip(every, pool.map(lambda twin: fit_twin(twin, folder), every), strict=True))
 
@@ -200,8 +177,73 @@ def table_of(fits: list[tuple[Twin, dict[str, Any]]], folder: Path) -> str:
     )
 
 
+@dataclass(frozen=True)
+class Law:
+    """A law by which records of slip weakening are fitted; t is free under all."""
+
+    name: str
+    lines: str  # of the case
+    free: dict[str, str]
+
+
+T = "prestress.t_Pa"
+LAWS = (
+    Law("slip_weakening", LAW, FREE),
+    Law(
+        "slip_weakening_exponential",
+        'law = "slip_weakening_exponential"\nmu_s = 0.6\n',
+        {"friction.mu_k": FREE["friction.mu_k"], "friction.d_c_m": "1e-6:4e-6:log", T: FREE[T]},
+    ),
+    Law(
+        "velocity_weakening",
+        'law = "velocity_weakening"\nmu_s = 0.6\n',
+        {"friction.mu_k": FREE["friction.mu_k"], "friction.alpha_m2_per_s2": "0.03:1:log", T: FREE[T]},
+    ),
+)
+
+
+def fit_law(law: Law, records: list[Path], folder: Path) -> dict[str, Any]:
+    folder.mkdir(parents=True, exist_ok=True)
+    case = folder / "case.toml"
+    case.write_text(CASE.replace(LAW, law.lines), encoding="utf-8")
+    return fit(case, records, law.free, folder / f"fit_{len(records)}", "--workers", "1")
+
+
+def left_by(found: dict[str, Any]) -> tuple[str, str]:
+    """What the best run leaves of onsets, over their error, and of strain, over its deviation, rms."""
+    of_onsets, squares = "", []
+    for part in found["parts"].values():
+        if part["standard_error"] is None:
+            squares.append(part["rms_over_deviation"] ** 2)
+        else:
+            over = part["rms_left"] / part["standard_error"]
+            of_onsets = f"{over:.2f} ({part['probability_of_chi2']:.2g})"
+    return of_onsets, f"{100 * np.sqrt(np.mean(squares)):.1f} %" if squares else ""
+
+
+def laws_table(folder: Path) -> str:
+    """One twin in the middle of the ranges, fitted by each law: by its onsets alone, and by all records."""
+    rng = np.random.default_rng([2, 0])
+    own = folder / "laws"
+    own.mkdir(exist_ok=True)
+    run_case(str(find_program()), case_of(own), own / "truth")
+    records = record_of(slipfront.open(own / "truth"), own / "record", rng)
+    asked = [(law, n) for n in (1, len(records)) for law in LAWS]
+    with ThreadPoolExecutor(WORKERS) as pool:
+        found = list(pool.map(lambda of: fit_law(of[0], records[: of[1]], own / of[0].name), asked))
+    rows = []
+    for (law, n), of in zip(asked, found, strict=True):
+        told = sum("does not explain" in line or "is no noise" in line for line in of["findings"])
+        what = "onsets" if n == 1 else "onsets and strain"
+        of_parts = f"{told} of {len(of['parts'])}"
+        rows.append([f"`{law.name}`", what, *left_by(of), of_parts, str(of["runs"]["all"])])
+    header = ["law of the fit", "records", "left of onsets over their error (chance)",
+              "left of strain over its deviation", "parts said not to be explained", "runs"]  # fmt: skip
+    return table(header, rows)
+
+
 def write(folder: Path, _: Path) -> dict[str, str]:
-    return {"twins": table_of(fit_twins(TWINS, folder), folder)}
+    return {"twins": table_of(fit_twins(TWINS, folder), folder), "laws": laws_table(folder)}
 
 
 if __name__ == "__main__":

@@ -15,10 +15,35 @@ from typing import Any
 
 import numpy as np
 from shared import DataError
+from slipfront.fit.command import FIRST_A_KEY
 from slipfront.fit.space import space_of
+from slipfront.sweep.definition import Sweep
+from slipfront.sweep.folder import LOCK
+from slipfront.sweep.sweeping import How, carry_out
 
 ROOT = Path(__file__).resolve().parents[1]
 POSTERIOR = "posterior.csv"
+RUNS = "runs"
+WORKERS = 2  # runs, or fits, at a time
+
+
+def first_runs(case: Path, free: Mapping[str, str], runs: Path) -> None:
+    """Those over the whole ranges, which several fits share."""
+    space = space_of(free)
+    points = space.points(space.sobol(FIRST_A_KEY * space.n))
+    vary = {key: [point.values[key] for point in points] for key in space.keys}
+    carry_out(Sweep(case, vary, {}, combine="zip"), runs, How(WORKERS, quiet=True, has_tables=False))
+
+
+def begin(folder: Path, runs: Path) -> None:
+    """A fit's folder that has runs already."""
+    if folder.exists():
+        return
+    folder.mkdir(parents=True)
+    # Links, but for the lock: that of one fit would hold all.
+    left_out = shutil.ignore_patterns(LOCK)
+    shutil.copytree(runs, folder / RUNS, copy_function=os.link, ignore=left_out)
+    (folder / "request.json").write_text("{}", encoding="utf-8")  # by which the fit knows its folder
 
 
 def fit(
@@ -38,7 +63,7 @@ def fit(
             lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
             raise DataError(f"{folder}: {lines[-1]}")
         timed.write_text(f"{time.monotonic() - begin:.1f}\n", encoding="utf-8")
-        shutil.rmtree(folder / "runs")
+        shutil.rmtree(folder / RUNS)
     found: dict[str, Any] = json.loads(told.read_text(encoding="utf-8"))
     return found | {"wall_s": float(timed.read_text(encoding="utf-8"))}
 
