@@ -219,7 +219,7 @@ laboratory: ready module  ## records beside runs: renews pictures of docs/record
 	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/gauge-table.py build/gauge-table
 
 .PHONY: fit-twins fit-references
-fit-twins: ready module  ## fits to forty records whose truth is known, table of docs/fit.md: half an hour
+fit-twins: ready module  ## fits to forty records whose truth is known, table of docs/fit.md: three quarters of an hour
 	PYTHONPATH=python SLIPFRONT_PROGRAM=$(abspath $(PROGRAM)) $(PYTHON) scripts/fit-twins.py
 
 fit-references: ready module  ## fits to other codes' solutions, whose values are known, table of docs/fit.md

@@ -32,7 +32,7 @@ class Combination:
 
 MU_S, MU_K, D_C, T, P = "friction.mu_s", "friction.mu_k", "friction.d_c_m", "prestress.t_Pa", "p"
 A, B, E, NU = "friction.a", "friction.b", "material.youngs_modulus_Pa", "material.poissons_ratio"
-LINEAR, EXPONENTIAL = ("slip_weakening",), ("exponential_slip_weakening",)
+LINEAR, EXPONENTIAL = ("slip_weakening",), ("slip_weakening_exponential",)
 COMBINATIONS = (
     Combination("fracture energy (mu_s - mu_k) p d_c/2", "J/m2", (MU_S, MU_K, P, D_C), LINEAR,
                 lambda s, k, p, d: (s - k) * p * d / 2),

@@ -33,6 +33,7 @@ RUNS = "runs"
 PLAUSIBLE = 20.0  # below the best logarithm of the likelihood, within which runs train the emulator
 MOST_TRAINING = 300
 MARGIN = 0.1  # of the emulator's box
+MOST_NOISE = 0.5  # of log L that the runs' own noise excuses: a poor emulator takes what it misses for noise
 AGREE = 0.4  # root mean square of what is expected of log L less what runs have
 STEPS, LAST_STEPS = 300, 1500
 BEYOND = 0.02  # share of samples at the end of the emulator's box that the posterior leaves
@@ -281,10 +282,11 @@ class Fitting:
                 )
             tell(f"round {rounds}: {len(self.ran)} runs, {len(shares)} of them like the record{off}")
             is_spent = len(self.ran) + batch > self.most_runs
-            if disagreement < float(np.hypot(AGREE, noise)) or is_spent:
+            excused = min(noise, MOST_NOISE)
+            if disagreement < float(np.hypot(AGREE, excused)) or is_spent:
                 samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
                 check = self.least_squares(emulator, samples, tell)
-                is_best = check is None or check.gain < np.hypot(BETTER, 2 * noise)
+                is_best = check is None or check.gain < np.hypot(BETTER, 2 * excused)
                 if is_spent and not is_best:
                     emulator, shares, logs = self.emulator()
                     samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)

@@ -132,7 +132,7 @@ def pictures_of(asked: Asked, run: Opened) -> list[ShownPart]:
 
 def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
     told = list(result.notes)
-    if not result.disagreement < np.hypot(AGREED, result.noise):
+    if not result.disagreement < AGREED:
         expected = (
             "no round has tested it"
             if np.isinf(result.disagreement)
