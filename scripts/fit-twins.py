@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import slipfront
-from fit_runs import POSTERIOR, WORKERS, begin, first_runs, fit, share_of_range, width
+from fit_runs import POSTERIOR, WORKERS, first_runs, fit, share_of_range, width
 from shared import renew_from_runs, run_case
 from slipfront.compare.onsets import onsets_at
 from slipfront.fit.command import FIRST_A_KEY
@@ -131,8 +131,7 @@ def twins(count: int, folder: Path) -> list[Twin]:
 
 def fit_twin(twin: Twin, folder: Path) -> dict[str, Any]:
     own = folder / f"fit_{twin.number:02d}"
-    begin(own, folder / "first")
-    return fit(folder / "case.toml", twin.records, FREE, own, "--workers", "1")
+    return fit(folder / "case.toml", twin.records, FREE, own, "--workers", "1", first=folder / "first")
 
 
 def fit_twins(count: int, folder: Path) -> list[tuple[Twin, dict[str, Any]]]:

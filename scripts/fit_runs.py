@@ -37,8 +37,6 @@ def first_runs(case: Path, free: Mapping[str, str], runs: Path) -> None:
 
 def begin(folder: Path, runs: Path) -> None:
     """A fit's folder that has runs already."""
-    if folder.exists():
-        return
     folder.mkdir(parents=True)
     # Links, but for the lock: that of one fit would hold all.
     left_out = shutil.ignore_patterns(LOCK)
@@ -47,23 +45,32 @@ def begin(folder: Path, runs: Path) -> None:
 
 
 def fit(
-    case: Path, records: Sequence[Path], free: Mapping[str, str], folder: Path, *options: str
+    case: Path,
+    records: Sequence[Path],
+    free: Mapping[str, str],
+    folder: Path,
+    *options: str,
+    first: Path | None = None,
 ) -> dict[str, Any]:
-    """fit.json of a fit, which may be there, with `wall_s`. Only what it found is kept of its runs."""
+    """fit.json of a fit with `wall_s`; one that ended before is kept, one that did not begins anew, with the
+    runs of `first`. Of its runs only what it found is kept."""
     told, timed = folder / "fit.json", folder / "wall_s.txt"
-    if not told.exists():
+    if not timed.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        if first is not None:
+            begin(folder, first)
         words = [str(case), *map(str, records), "-o", str(folder), "-q", *options]
         words += [word for key, text in free.items() for word in ("--free", f"{key}={text}")]
         here = os.environ | {"PYTHONPATH": str(ROOT / "python"), "OMP_NUM_THREADS": "1"}
-        begin = time.monotonic()
+        begun = time.monotonic()
         done = subprocess.run(
             [sys.executable, "-m", "slipfront", "fit", *words], capture_output=True, text=True, env=here
         )
         if done.returncode != 0:
             lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
             raise DataError(f"{folder}: {lines[-1]}")
-        timed.write_text(f"{time.monotonic() - begin:.1f}\n", encoding="utf-8")
         shutil.rmtree(folder / RUNS)
+        timed.write_text(f"{time.monotonic() - begun:.1f}\n", encoding="utf-8")
     found: dict[str, Any] = json.loads(told.read_text(encoding="utf-8"))
     return found | {"wall_s": float(timed.read_text(encoding="utf-8"))}
 

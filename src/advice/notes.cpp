@@ -93,15 +93,17 @@ void add_odd_pressures(const Problem& problem, Diagnostics& notes) {
   if (!problem.is_prestressed()) {
     const double strain = nominal_pressure_Pa(problem) / E_Pa;
     if (strain > max_strain || strain < min_strain)
-      notes.add(
-          Diagnostic::units, "the {} the plate by {:.3g} of Young's modulus{}, {}: {}?",
-          problem.loading.mean_pressure_Pa || problem.loading.normal_force_N_per_m ? "normal force presses"
-                                                                                   : "tilt presses",
-          strain, E_Pa < problem.above().material.youngs_modulus_Pa ? " of the base" : "",
-          strain > max_strain ? "beyond small strains" : "less than in any experiment",
-          problem.loading.mean_pressure_Pa       ? "is loading.mean_pressure_Pa in Pa"
-          : problem.loading.normal_force_N_per_m ? "is loading.normal_force_N_per_m in N per m of thickness"
-                                                 : "are loading.tilt_left_m and loading.tilt_right_m in m");
+      notes.add(Diagnostic::units, "the {} the plate by {:.3g} of Young's modulus{}, {}: {}?",
+                statics::normal_force_N_per_m(problem.loading, problem.width_m()) ? "normal force presses"
+                                                                                  : "tilt presses",
+                strain, E_Pa < problem.above().material.youngs_modulus_Pa ? " of the base" : "",
+                strain > max_strain ? "beyond small strains" : "less than in any experiment",
+                problem.loading.mean_pressure_Pa ? "is loading.mean_pressure_Pa in Pa"
+                : problem.loading.normal_force_N_per_m
+                    ? "is loading.normal_force_N_per_m in N per m of thickness"
+                : problem.loading.top_pressure.is_there()
+                    ? "is loading.pressures_Pa in Pa"
+                    : "are loading.tilt_left_m and loading.tilt_right_m in m");
     return;
   }
   const auto& prestress = *problem.prestress;

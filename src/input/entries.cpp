@@ -241,14 +241,29 @@ Condition pressed_by_force() {
           [](const Case& c) { return !is_prestressed(c) && is_pressed_by_force(c); }};
 }
 Condition pressed_by_displacement() {
-  return {Message("{} = direct or ramp and neither {} nor {:leaf}", Key("loading.method"),
-                  Key("loading.normal_force_N_per_m"), Key("loading.mean_pressure_Pa")),
-          [](const Case& c) { return !is_prestressed(c) && !is_pressed_by_force(c); }};
+  return {Message("{} = direct or ramp and none of {}, {:leaf} and {:leaf}", Key("loading.method"),
+                  Key("loading.normal_force_N_per_m"), Key("loading.mean_pressure_Pa"),
+                  Key("loading.pressures_Pa")),
+          [](const Case& c) {
+            return !is_prestressed(c) && !is_pressed_by_force(c) && !c.loading.top_pressure.is_there();
+          }};
+}
+Condition pressed_under_dead_load() {
+  return {Message("{} = direct, {} = 0 and neither {} nor {:leaf}", Key("loading.method"),
+                  Key("loading.normal_stiffness_Pa_per_m"), Key("loading.normal_force_N_per_m"),
+                  Key("loading.mean_pressure_Pa")),
+          [](const Case& c) {
+            return c.loading.method == LoadingMethod::direct && c.machine.normal_stiffness_Pa_per_m == 0 &&
+                   !is_pressed_by_force(c);
+          }};
 }
 /// The other way to give one load.
 Condition tilted_without(const char* key, std::optional<double> Loading::*other) {
-  return {Message("{} = direct or ramp and no {}", Key("loading.method"), Key(key)),
-          [other](const Case& c) { return !is_prestressed(c) && !(c.loading.*other); }};
+  return {Message("{} = direct or ramp and neither {} nor {}", Key("loading.method"), Key(key),
+                  Key("loading.pressures_Pa")),
+          [other](const Case& c) {
+            return !is_prestressed(c) && !(c.loading.*other) && !c.loading.top_pressure.is_there();
+          }};
 }
 Condition sheared_without(const char* key, std::optional<double> Loading::*other) {
   return {Message("{} = direct, {} other than spontaneous and no {}", Key("loading.method"),
@@ -460,6 +475,14 @@ void add_loading(Entries& all) {
   loading.optional("mean_pressure_Pa", &Loading::mean_pressure_Pa, above(0), 1e6,
                    "mean pressure of the interface before any shear, normal force over plate.width_m, "
                    "instead of the two displacements, which are found");
+  loading.only_with = pressed_under_dead_load();
+  loading.add(
+      "pressures_x_m", [](auto& l) -> auto& { return l.top_pressure.x_m; }, at_least(0),
+      "places along the top edge, ascending, of pressures_Pa");
+  loading.add(
+      "pressures_Pa", [](auto& l) -> auto& { return l.top_pressure.p_Pa; }, at_least(0),
+      "pressure on the top edge there, which stays, instead of the two displacements, linear between, "
+      "constant beyond the first and the last");
   loading.only_with = pressed_by_force();
   loading.add("tilt_difference_m", &Loading::tilt_difference_m, any(),
               "downward displacement of the top edge at its left end less that at its right end");

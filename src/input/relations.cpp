@@ -152,10 +152,28 @@ void check_prestress(const Case& config, const Document& document) {
                     kind, Key("plate.sides"));
 }
 
+void check_top_pressure(const statics::TopPressure& pressure, double width_m) {
+  const auto& [x_m, p_Pa] = pressure;
+  const Key places("loading.pressures_x_m"), pressures("loading.pressures_Pa");
+  if (x_m.size() != p_Pa.size())
+    throw UserError("{} has {} values and {} has {}; give one pressure per place", places, x_m.size(),
+                    pressures, p_Pa.size());
+  if (p_Pa.empty()) return;
+  const auto stop = std::ranges::adjacent_find(x_m, std::greater_equal<>());
+  if (stop != x_m.end())
+    throw UserError("{} must rise: {:.12g} m comes before {:.12g} m", places, *stop, *(stop + 1));
+  if (x_m.back() > width_m)
+    throw UserError("{} reaches {:.12g} m, beyond {} = {:.12g} m", places, x_m.back(), Key("plate.width_m"),
+                    width_m);
+  if (pressure.force_N_per_m(width_m) <= 0)
+    throw UserError("{} press nothing down; give at least one above 0", pressures);
+}
+
 void check_tilt(const Case& config) {
   if (is_prestressed(config)) return;
   const auto& loading = config.loading;
   const auto& plate = config.plate;
+  check_top_pressure(loading.top_pressure, plate.width_m);
   const bool by_force = statics::normal_force_N_per_m(loading, plate.width_m).has_value();
   const double tilt_m =
       by_force ? std::abs(loading.tilt_difference_m) : std::max(loading.tilt_left_m, loading.tilt_right_m);

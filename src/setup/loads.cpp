@@ -7,7 +7,7 @@ namespace slipfront::setup {
 
 bool has_forces(const Problem& problem) {
   const auto& loading = problem.loading;
-  return loading.normal_force_N_per_m || loading.mean_pressure_Pa || statics::is_sheared_by_force(loading);
+  return statics::normal_force_N_per_m(loading, problem.width_m()) || statics::is_sheared_by_force(loading);
 }
 
 statics::Equilibrium common_state(const Problem& problem, const statics::Statics& statics,

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "statics/top_pressure.hpp"
+
 namespace slipfront::statics {
 
 /// What the solvers take their dense and sparse algebra from: "Eigen 3.4.0".
@@ -41,9 +43,11 @@ struct Loading {
   double edge_margin_m = 5e-3;  ///< "inside" the interface leaves out this much at each end of the contact
   double critical_margin =
       1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)
-  /// At most one of the two, of the state before any shear; then tilt_left_m and tilt_right_m do not count.
+  /// At most one of the three, of the state before any shear; then tilt_left_m and tilt_right_m do not count.
   std::optional<double> normal_force_N_per_m = {}, mean_pressure_Pa = {};
-  double tilt_difference_m = 0;  ///< with these: how much further down the left end goes than the right one
+  TopPressure top_pressure = {};
+  double tilt_difference_m =
+      0;  ///< with the first two: how much further down the left end goes than the right one
   /// Force of the subcritical state, at most one of the two; then critical_margin does not count.
   std::optional<double> shear_force_N_per_m = {}, shear_over_critical = {};
 };
@@ -51,6 +55,7 @@ struct Loading {
 /// The normal force that is asked for, of an interface of a given width; none where displacements are.
 inline std::optional<double> normal_force_N_per_m(const Loading& loading, double width_m) {
   if (loading.mean_pressure_Pa) return *loading.mean_pressure_Pa * width_m;
+  if (loading.top_pressure.is_there()) return loading.top_pressure.force_N_per_m(width_m);
   return loading.normal_force_N_per_m;
 }
 

@@ -223,6 +223,7 @@ constexpr double state_tolerance = 1e-9;
 Message keys_of_tilt(const Loading& loading) {
   const Key difference("loading.tilt_difference_m");
   if (loading.mean_pressure_Pa) return Message("{} or {}", Key("loading.mean_pressure_Pa"), difference);
+  if (loading.top_pressure.is_there()) return Message("{}", Key("loading.pressures_Pa"));
   if (loading.normal_force_N_per_m)
     return Message("{} or {}", Key("loading.normal_force_N_per_m"), difference);
   return Message("{} or {}", Key("loading.tilt_left_m"), Key("loading.tilt_right_m"));
@@ -276,11 +277,11 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
 }
 
 /// Interface nodes' displacement along x, relative to that of a base. [interface nodes]
-std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u) {
+std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Equilibrium& state) {
   std::vector<double> u_x_m;
-  for (const auto n : mesh.interface_nodes) u_x_m.push_back(u.above.x[n]);
+  for (const auto n : mesh.interface_nodes) u_x_m.push_back(state.u_m.x[n]);
   for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k)
-    u_x_m[k] -= u.below.x[base->interface_nodes[k]];
+    u_x_m[k] -= state.below_u_m.x[base->interface_nodes[k]];
   return u_x_m;
 }
 
@@ -364,6 +365,18 @@ TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
   return tilt;
 }
 
+/// An edge that bears a pressure.
+TopDisplacement pressed_top(const mesh::Mesh& mesh, const TopPressure& pressure) {
+  const auto& loaded = mesh.far_edge_nodes;
+  std::vector<double> x_m;
+  for (const auto n : loaded) x_m.push_back(mesh.x_m[n]);
+  const auto forces = pressure.forces_N_per_m(x_m);
+  const std::vector<double> in_place(loaded.size(), 0.0);
+  TopDisplacement top{in_place, in_place, {}, solid::Field(mesh.n_nodes())};
+  for (std::size_t k = 0; k < loaded.size(); ++k) top.tilt_force_N.y[loaded[k]] = -forces[k];
+  return top;
+}
+
 double height_over_modulus(const ElasticBody& body) {
   double height_m = body.mesh.grid.rows * body.mesh.grid.spacing_m;
   for (const auto& grid : body.mesh.coarser) height_m += grid.rows * grid.spacing_m;
@@ -406,7 +419,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   const auto& mesh = mesh_;
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.interface_nodes.size(), "mu_s of another interface");
   solver_ = make_plate_solver(plate_body, loading.solver, base);
-  press_down(height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0));
+  press_down(plate_body, base);
   tilted_top_.tilt_force_N = tilt_force_N(plate_body.material);
   pushed_rows_ = solid::assemble_rows(mesh, plate_body.material, boundary_.pushed);
   const auto tilted_u = displacement_of(tilted_);
@@ -414,20 +427,29 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       solver_->load_case(constraint_under_shear(boundary_), tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
-void Statics::press_down(double compliance_m_per_Pa) {
+void Statics::press_down(const ElasticBody& plate_body, const std::optional<ElasticBody>& base) {
   const auto& mesh = mesh_;
   const bool is_free = loading_.top_during_tilt == TopEdge::free || !boundary_.pushed.empty();
   const auto& loaded = mesh.far_edge_nodes;
   const double width_m = mesh.x_m[loaded.back()] - mesh.x_m[loaded.front()];
-  const auto force_N_per_m = normal_force_N_per_m(loading_, width_m);
+  // Jacks bear the edge without a machine: the pressing is over before that moves.
+  std::unique_ptr<PlateSolver> under_jacks;
+  if (loading_.top_pressure.is_there())
+    under_jacks = make_plate_solver({mesh, plate_body.material, {is_free ? 0 : infinity, 0}},
+                                    StaticSolver::direct, base);
+  const auto force_N_per_m = under_jacks ? std::nullopt : normal_force_N_per_m(loading_, width_m);
   if (force_N_per_m) {
-    const double guess_m = *force_N_per_m / width_m * compliance_m_per_Pa;
+    const double compliance_m_per_Pa =
+                     height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0),
+                 guess_m = *force_N_per_m / width_m * compliance_m_per_Pa;
     loading_.tilt_left_m = guess_m + 0.5 * loading_.tilt_difference_m;
     loading_.tilt_right_m = guess_m - 0.5 * loading_.tilt_difference_m;
   }
 
-  auto tilt = tilt_of(mesh, loading_);
+  auto tilt = under_jacks ? pressed_top(mesh, loading_.top_pressure) : tilt_of(mesh, loading_);
   const auto make_case = [&](int level) {
+    if (under_jacks)
+      return under_jacks->load_case(TopConstraint::machine, tilt, EdgeMotion::none, nullptr, level);
     return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt,
                               force_N_per_m ? EdgeMotion::down : EdgeMotion::none, nullptr, level);
   };
@@ -452,26 +474,26 @@ void Statics::press_down(double compliance_m_per_Pa) {
                        settle_problem, *plate);
   tilted_ = make_equilibrium(*problem, pressed_m, loading_.edge_margin_m);
   tilted_.shear_m = 0;
-  loading_.tilt_left_m += pressed_m;
-  loading_.tilt_right_m += pressed_m;
-  for (double& u_y_m : tilt.u_y_m) u_y_m -= pressed_m;
   if (!reached)
     throw UserError("no displacement of the top edge gives the normal force; change {}",
                     keys_of_tilt(loading_));
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError("the tilt leaves the plate without contact; increase {}", keys_of_tilt(loading_));
   auto u = plate->displacement(pressed_m);
-  held_contact_ = tilted_.contact;
-  held_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u);
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
+  held_contact_ = tilted_.contact;
+  held_u_x_m_ = relative_u_x_m(mesh, base_mesh_, tilted_);
   tilted_.u_per_shear = solid::Field(tilted_.u_m.size());
   tilted_.below_u_per_shear = solid::Field(tilted_.below_u_m.size());
 
-  if (is_free)
-    for (std::size_t k = 0; k < mesh.far_edge_nodes.size(); ++k)
-      tilt.u_x_m[k] = tilted_.u_m.x[mesh.far_edge_nodes[k]];
+  for (std::size_t k = 0; k < loaded.size(); ++k) {
+    if (is_free) tilt.u_x_m[k] = tilted_.u_m.x[loaded[k]];
+    tilt.u_y_m[k] = under_jacks ? tilted_.u_m.y[loaded[k]] : tilt.u_y_m[k] - pressed_m;
+  }
+  loading_.tilt_left_m = under_jacks ? -tilt.u_y_m.front() : loading_.tilt_left_m + pressed_m;
+  loading_.tilt_right_m = under_jacks ? -tilt.u_y_m.back() : loading_.tilt_right_m + pressed_m;
   for (const auto n : boundary_.pushed) tilt.pushed_u_x_m.push_back(tilted_.u_m.x[n]);
   tilted_top_ = tilt;
 }

@@ -149,9 +149,8 @@ class Statics {
   const PlateSolver& solver() const { return *solver_; }
 
  private:
-  /// Tilts the plate.
-  /// @param compliance_m_per_Pa  about: displacement of the loaded edge over the mean pressure
-  void press_down(double compliance_m_per_Pa);
+  /// Presses the plate down by displacements of its loaded edge, or by the pressure on it.
+  void press_down(const ElasticBody& plate, const std::optional<ElasticBody>& base);
   template <class Problem>
   Equilibrium equilibrium(const Problem& problem, double shear_m) const;
   /// What the machine's springs bear in the tilted plate.

@@ -25,6 +25,7 @@ const std::string uniform_tractions =
     "[prestress]\nt_Pa = 1e6\np_Pa = 5e6\n[loading]\nmethod = \"prestress\"\n";
 const std::string at_rest = uniform_tractions + "[event]\nkind = \"none\"\n";
 const std::string patch = uniform_tractions + "[event]\nkind = \"nucleation\"\n[nucleation]\nx_m = 0.1\n";
+const std::string dead_load = "[loading]\nnormal_stiffness_Pa_per_m = 0\n";
 const std::string on_steel =
     "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2e11\npoissons_ratio = 0.3\n"
     "density_kg_per_m3 = 7800\nstiffness_damping_s = 1e-7\n";
@@ -78,6 +79,10 @@ const Contradiction wrong_cases[] = {
     {"Tilt", "[loading]\ntilt_left_m = 0.1 # here\n"},
     {"TiltOfALowerPlate", "[plate]\nelement_size_m = 1e-4\nheight_m = 1e-4 # here\n"},
     {"TiltWithAForce", "[loading]\nmean_pressure_Pa = 1e6\ntilt_difference_m = -0.1 # here\n"},
+    {"FewerPressures", dead_load + "pressures_x_m = [0, 0.1] # here\npressures_Pa = [1e6]\n"},
+    {"PressuresBackwards", dead_load + "pressures_x_m = [0.1, 0.1] # here\npressures_Pa = [1e6, 2e6]\n"},
+    {"PressureBeyondTheEdge", dead_load + "pressures_x_m = [0, 0.5] # here\npressures_Pa = [1e6, 2e6]\n"},
+    {"PressuresOfZero", dead_load + "pressures_x_m = [0, 0.1]\npressures_Pa = [0, 0] # here\n"},
     {"EdgeMargin", "[plate]\nwidth_m = 0.2\n[loading]\nedge_margin_m = 0.1 # here\n"},
     {"EdgeMarginOfANarrowPlate", "[loading]\nedge_margin_m = 0.05\n", {{"plate.width_m", "0.1"}}},
     {"TriggerZone", "[event]\nkind = \"left\"\ntrigger_zone_m = 0.3 # here\n"},

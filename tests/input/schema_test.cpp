@@ -46,13 +46,10 @@ auto members(const Struct& s) {
   } else if constexpr (n == 8) {
     const auto& [a, b, c, d, e, f, g, h] = s;
     return std::tuple(a, b, c, d, e, f, g, h);
-  } else if constexpr (n == 9) {
+  } else {
+    static_assert(n == 9);
     const auto& [a, b, c, d, e, f, g, h, i] = s;
     return std::tuple(a, b, c, d, e, f, g, h, i);
-  } else {
-    static_assert(n == 13);
-    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
-    return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l, m);
   }
 }
 auto members(const mesh::Plate& plate) {
@@ -62,6 +59,10 @@ auto members(const mesh::Plate& plate) {
 auto members(const boundary::Machine& machine) {
   const auto& [shear_Pa, normal_Pa, pusher, mass_kg_per_m2] = machine;
   return std::tuple(shear_Pa, normal_Pa, pusher.from_m, pusher.to_m, mass_kg_per_m2);
+}
+auto members(const statics::Loading& loading) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, pressure, l, m, n] = loading;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j, pressure.x_m, pressure.p_Pa, l, m, n);
 }
 auto members(const Base& base) {
   const auto& [kind, plate, material] = base;
@@ -93,7 +94,7 @@ auto members(const Case& c) {
                regularisation, contact, event, trigger, nucleation, sequence, time, fronts, output, probes] =
       c;
   return std::tuple(title, members(plate), members<5>(material), members(machine), members(base),
-                    members<13>(loading), members(prestress), members(friction), members(friction_along_x),
+                    members(loading), members(prestress), members(friction), members(friction_along_x),
                     tip, members<4>(regularisation), contact, event, members<6>(trigger),
                     members<9>(nucleation), members<7>(sequence), members<9>(time), members<7>(fronts),
                     members<6>(output), members<4>(probes));
@@ -342,7 +343,13 @@ TEST(Schema, ForcesReadBackFromToml) {
   force.loading.mean_pressure_Pa = force.loading.shear_over_critical = {};
   force.loading.normal_force_N_per_m = 2e5 / 7;
   force.loading.shear_force_N_per_m = 1e4;
-  for (const Case& c : {pressure, force}) {
+  Case uneven = pressure;
+  uneven.machine.normal_stiffness_Pa_per_m = 0;
+  uneven.time.precision = motion::Precision::double_precision;
+  uneven.loading.mean_pressure_Pa = {};
+  uneven.loading.tilt_difference_m = 0;
+  uneven.loading.top_pressure = {{0.01, 0.1 / 3}, {0, 1e6 / 3}};
+  for (const Case& c : {pressure, force, uneven}) {
     for (const char* key : {"tilt_left_m", "tilt_right_m", "critical_margin"})
       EXPECT_EQ(to_toml(c).find(std::string("\n") + key), std::string::npos) << key;
     expect_equal(parsed(to_toml(c)), c);
@@ -524,9 +531,14 @@ constexpr Refused refused[] = {
     {"[base]\nkind = \"rigid\"\nheight_m = 1", "c.toml:3: base.height_m applies only with base.kind"},
     // Two ways to give one load, and loads that do not go together
     {"[loading]\nmean_pressure_Pa = 1e6\ntilt_left_m = 1e-4\n", "c.toml:3: loading.tilt_left_m applies only",
-     "neither loading.normal_force_N_per_m nor mean_pressure_Pa"},
+     "none of loading.normal_force_N_per_m, mean_pressure_Pa and pressures_Pa"},
     {"[loading]\nmean_pressure_Pa = 1e6\nnormal_force_N_per_m = 1e5\n",
-     "c.toml:2: loading.mean_pressure_Pa applies only", "no loading.normal_force_N_per_m"},
+     "c.toml:2: loading.mean_pressure_Pa applies only",
+     "neither loading.normal_force_N_per_m nor loading.pressures_Pa"},
+    {"[loading]\npressures_x_m = [0]\npressures_Pa = [1e6]\n",
+     "c.toml:2: loading.pressures_x_m applies only", "loading.normal_stiffness_Pa_per_m = 0"},
+    {"[loading]\nnormal_stiffness_Pa_per_m = 0\nmean_pressure_Pa = 1e6\npressures_x_m = [0]\npressures_Pa = [1e6]\n",
+     "c.toml:4: loading.pressures_x_m applies only", "nor mean_pressure_Pa"},
     {"[loading]\ntilt_difference_m = 1e-5\n", "c.toml:2: loading.tilt_difference_m applies only",
      "loading.normal_force_N_per_m or mean_pressure_Pa"},
     {"[loading]\nmethod = \"prestress\"\nmean_pressure_Pa = 1e6\n",

@@ -21,6 +21,8 @@ from slipfront.fit.combinations import combinations, findings
 from slipfront.fit.command import events, main
 from slipfront.fit.emulator import Emulator
 from slipfront.fit.likelihood import alike_of, log_gammainc, part_of
+from slipfront.fit.mesh import Finer
+from slipfront.fit.outcome import mesh_doubts
 from slipfront.fit.posterior import marginals, sampled
 from slipfront.fit.space import space_of, spread_out
 from slipfront.sweep.definition import flattened
@@ -267,6 +269,35 @@ def test_a_wrong_case_is_told(place, monkeypatch):
     assert called(monkeypatch, place, "case.toml", "onsets.csv", *arguments, "-o", "wrong", "-q") == 0
     found = json.loads((place / "wrong/fit.json").read_text())
     assert any(line.startswith("the model does not explain onsets.csv") for line in found["findings"])
+
+
+def test_what_a_finer_mesh_would_change(place, monkeypatch, tmp_path):
+    """Fitted with elements twice as large: what is expected of the finer mesh is nearer to the truth."""
+    key, truth = "friction.d_c_m", TRUTH["friction.d_c_m"]
+    run = slipfront.open(place / "truth")
+    onsets = {"x_m": PLACES_M, "time_s": onsets_at(run, PLACES_M), "error_s": 0.2 * ERROR_S}
+    pd.DataFrame(onsets).to_csv(tmp_path / "onsets.csv", index=False)
+    arguments = [*free({key: FREE[key]}), "--set", "plate.element_size_m=5e-3", "-o", tmp_path / "fit", "-q"]
+    assert called(monkeypatch, place, "case.toml", tmp_path / "onsets.csv", *arguments) == 0
+    found = json.loads((tmp_path / "fit/fit.json").read_text())
+    assert found["finer_mesh"]["element_size_m"] == 2.5e-3
+    off = abs(found["parameters"][key]["median"] / truth - 1)
+    assert off > 0.02
+    assert abs(found["finer_mesh"][key]["median"] / truth - 1) < 0.5 * off
+
+
+def test_a_mesh_that_moves_keys_is_told():
+    space = space_of(FREE)
+    samples = np.random.default_rng(3).normal(0.5, 0.05, (4000, 2))
+    samples += 0.5 - np.median(samples, axis=0)
+    moved = samples + np.array([-0.1, 0.01])
+    (note,) = mesh_doubts(space, samples, Finer(1e-3, moved))
+    assert (
+        note == "plate.element_size_m = 0.001 would move friction.mu_k to 0.26, by 2 of its standard "
+        "deviations: fit again with it"
+    )
+    assert mesh_doubts(space, samples, Finer(1e-3, samples + 0.02)) == []
+    assert mesh_doubts(space, samples, "out of memory") == ["what the mesh moves is not known: out of memory"]
 
 
 REFUSED = {

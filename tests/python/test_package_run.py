@@ -552,6 +552,8 @@ pusher_from_m = 8e-3
 pusher_to_m = 16e-3
 shear_stiffness_Pa_per_m = 1.25e11
 normal_stiffness_Pa_per_m = 0.0
+pressures_x_m = [0.05, 0.15]
+pressures_Pa = [4e6, 6e6]
 mass_kg_per_m2 = 20.0
 """,
     "unloaded edge": UNIFORM.replace(

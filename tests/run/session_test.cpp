@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -229,11 +230,21 @@ TEST_F(InterruptedRun, TakesTheCheckpointBeforeADamagedOne) {
   expect_same(results_in(folder_.path()), results_of(config_));
 }
 
-TEST_F(InterruptedRun, AddsTheWallTimeOfItsSessions) {
-  const auto run = nlohmann::json::parse(test::read_file(folder_ / "unfinished/run.json"));
-  const double before_s = run["wall_s"];
-  EXPECT_GT(before_s, 0);
-  EXPECT_GT(resume(folder_.path(), stopping_at("event", 101)).last.result.stepping_wall_s, before_s);
+TEST(Session, AddsTheWallTimeOfItsSessions) {
+  constexpr double slept_s = 0.1;  // longer than the steps take
+  const test::TemporaryFolder folder;
+  auto options = test::with_threads(1);
+  options.keep_every_s = 20e-6;
+  auto hooks = stopping_at("event", 100);
+  hooks.progress = [=, inner = hooks.progress](const char* part, std::int64_t step, std::int64_t n) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(slept_s));
+    inner(part, step, n);
+  };
+  {
+    results::ResultFolder held(folder.path(), run_work);
+    run_into(held, make_problem(coarse_case()), options, hooks);
+  }
+  EXPECT_GT(resume(folder.path(), stopping_at("event", 101)).last.result.stepping_wall_s, slept_s);
 }
 
 TEST_F(InterruptedRun, BeginsAnewWithoutAnyCheckpoint) {

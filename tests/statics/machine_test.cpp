@@ -16,6 +16,7 @@ struct Sample {
   double shear_Pa, normal_Pa;
   bool is_pushed = false;
   int coarsenings = 0;
+  bool is_uneven = false;  ///< its pressure on the far edge
 };
 
 const Sample samples[] = {{"Springs", 2e9, 5e9},
@@ -26,7 +27,10 @@ const Sample samples[] = {{"Springs", 2e9, 5e9},
                           {"PushedBySpring", 5e8, rigid, true},
                           {"PushedUnderDeadLoad", rigid, 0, true},
                           {"PushedBySpringUnderSpring", 5e8, 1e10, true},
-                          {"GradedPushed", 5e8, 0, true, 1}};
+                          {"GradedPushed", 5e8, 0, true, 1},
+                          {"UnevenOnSpring", 3e8, 0, false, 0, true},
+                          {"UnevenHeldAlong", rigid, 0, false, 1, true},
+                          {"PushedUneven", 5e8, 0, true, 0, true}};
 
 mesh::Plate plate_of(const Sample& sample) {
   mesh::Plate plate{.width_m = 0.08, .height_m = 0.04, .element_size_m = 2e-3, .corner = mesh::Corner::none};
@@ -47,9 +51,12 @@ Statics statics_of(const mesh::Mesh& mesh, const boundary::Machine& machine, con
   return {{mesh, material, machine}, base, loading, std::vector<double>(mesh.interface_nodes.size(), 0.5)};
 }
 
-Loading loading() {
+const TopPressure uneven{{0.02, 0.03, 0.07}, {2e6, 4e6, 3e6}};
+
+Loading loading(bool is_uneven = false) {
   Loading loading{.tilt_left_m = 3e-5, .tilt_right_m = 5e-5};
   loading.edge_margin_m = 6e-3;
+  if (is_uneven) loading.top_pressure = uneven;
   return loading;
 }
 
@@ -67,7 +74,7 @@ class AMachine : public ::testing::TestWithParam<Sample> {
   mesh::Mesh mesh_ = mesh::make_plate(plate_of(GetParam()));
   solid::Material material_ = pmma;
   boundary::Boundary boundary_ = boundary::make_boundary(mesh_, machine_of(GetParam()));
-  Statics statics_ = statics_of(mesh_, machine_of(GetParam()), loading(), material_);
+  Statics statics_ = statics_of(mesh_, machine_of(GetParam()), loading(GetParam().is_uneven), material_);
 
   Eigen::VectorXd forces(const Equilibrium& e) const {
     return test::assembled_stiffness(mesh_, material_) * test::flat(e.u_m);
@@ -77,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, AMachine, ::testing::ValuesIn(samples),
                          [](const auto& sample) { return sample.param.name; });
 
 TEST_P(AMachine, PullsEachNodeByItsShareOfTheSprings) {
-  const auto& [name, shear_Pa, normal_Pa, is_pushed, coarsenings] = GetParam();
+  const auto& [name, shear_Pa, normal_Pa, is_pushed, coarsenings, is_uneven] = GetParam();
   const auto& tilted = statics_.tilted();
   const auto e = statics_.shear_to(0.98);
   const Eigen::VectorXd before = forces(tilted);
@@ -122,7 +129,7 @@ TEST_P(AMachine, DoesTheWorkThatPlateAndMachineStore) {
   const auto stored = [&](const Equilibrium& e) {
     return solid::strain_energy_J_per_m(op, e.u_m) + statics_.machine_energy_J_per_m(e);
   };
-  const auto a = statics_.shear_to(0.5), b = statics_.shear_to(0.9);
+  const auto a = statics_.shear_to(0.6), b = statics_.shear_to(0.9);
   const auto tributary_m = mesh::tributary_lengths_m(mesh_);
   double work = 0.5 * (b.shear_m - a.shear_m) *
                 (contact_force(a, tributary_m).shear_N_per_m + contact_force(b, tributary_m).shear_N_per_m);
@@ -139,6 +146,48 @@ TEST_P(AMachine, DoesTheWorkThatPlateAndMachineStore) {
 
 TEST_P(AMachine, MovesThePlateAsItsDisplacementGrows) {
   expect_slope_of_displacement(statics_, 0.9, 1e-10);
+}
+
+TEST(Machine, PressesAsItIsGivenAlongX) {
+  // Of trapezia, and their moments about x = 0.
+  double force_N_per_m = 0, moment_N = 0;
+  const std::vector<double> x_m = {0, 0.02, 0.03, 0.07, 0.08}, p_Pa = {2e6, 2e6, 4e6, 3e6, 3e6};
+  for (std::size_t k = 0; k + 1 < x_m.size(); ++k) {
+    const double a = x_m[k], b = x_m[k + 1], p = p_Pa[k], q = p_Pa[k + 1];
+    force_N_per_m += 0.5 * (p + q) * (b - a);
+    moment_N += (b - a) / 6 * (p * (2 * a + b) + q * (a + 2 * b));
+  }
+  EXPECT_NEAR(uneven.force_N_per_m(0.08), force_N_per_m, 1e-12 * force_N_per_m);
+  for (const auto& sample : samples) {
+    if (!sample.is_uneven) continue;
+    SCOPED_TRACE(sample.name);
+    const auto mesh = mesh::make_plate(plate_of(sample));
+    for (const std::optional<ElasticBody>& base : {std::optional<ElasticBody>{}, {{mesh, gel}}}) {
+      const auto statics = statics_of(mesh, machine_of(sample), loading(true), pmma, base);
+      const auto& tilted = statics.tilted();
+      const Eigen::VectorXd f = test::assembled_stiffness(mesh, pmma) * test::flat(tilted.u_m);
+      const double tolerance = 1e-9 * force_N_per_m;
+      double force_of_top = 0, moment_of_top = 0, shear_moment = 0, force_of_p = 0, moment_of_p = 0;
+      for (const auto n : mesh.far_edge_nodes) {
+        force_of_top -= f(2 * n + 1);
+        moment_of_top -= f(2 * n + 1) * mesh.x_m[n];
+        shear_moment += f(2 * n) * mesh.y_m[n];
+      }
+      EXPECT_NEAR(force_of_top, force_N_per_m, tolerance);
+      EXPECT_NEAR(moment_of_top, moment_N, tolerance * 0.08);
+      EXPECT_EQ(std::abs(shear_moment) < tolerance * 0.08, sample.is_pushed);  // else held along x
+      const auto lengths_m = mesh::tributary_lengths_m(mesh);
+      for (std::size_t k = 0; k < lengths_m.size(); ++k) {
+        force_of_p += tilted.tractions.p_s_Pa[k] * lengths_m[k];
+        moment_of_p += tilted.tractions.p_s_Pa[k] * lengths_m[k] * tilted.tractions.x_m[k];
+      }
+      EXPECT_NEAR(force_of_p, force_N_per_m, tolerance);
+      EXPECT_NEAR(moment_of_p, moment_N + shear_moment, tolerance * 0.08);
+      EXPECT_EQ(tilted.shear_m, 0);
+      EXPECT_EQ(statics.loading().tilt_left_m, -tilted.u_m.y[mesh.far_edge_nodes.front()]);
+      EXPECT_EQ(statics.loading().tilt_right_m, -tilted.u_m.y[mesh.far_edge_nodes.back()]);
+    }
+  }
 }
 
 TEST(Machine, KeepsTheForceOfABodyOnABase) {

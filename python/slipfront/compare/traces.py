@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -159,9 +160,9 @@ def slip_at(run: OpenRun, sensor: SlipSensor) -> tuple[np.ndarray, np.ndarray]:
     return history["time_s"].to_numpy(), ((1 - share) * pair[:, 0] + share * pair[:, 1])[None]
 
 
-def strain_at(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
+def strain_at(run: OpenRun, gauge: Gauge, probes: list[Gauge]) -> tuple[np.ndarray, np.ndarray]:
     """Times, and the components or arms of a gauge by a run's probes [parts, times]."""
-    rows, probes = [], probes_of(run, gauge.is_strain)
+    rows = []
     for part in gauge.parts:
         of_part = weights(part)
         assert of_part is not None  # as the gauge was made
@@ -171,11 +172,12 @@ def strain_at(run: OpenRun, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
     return time_s, np.array(rows)
 
 
-def trace_of(record: Gauge | SlipSensor, run: OpenRun) -> Trace:
-    """The run passes the record's filter and its amplifier, a low-pass of first order."""
+def trace_of(record: Gauge | SlipSensor, run: OpenRun, probes: Callable[[bool], list[Gauge]]) -> Trace:
+    """The run passes the record's filter and its amplifier, a low-pass of first order. probes: of the run, of
+    strain or of stress."""
     if isinstance(record, Gauge):
         parts, unit = record.parts, "1" if record.is_strain else "Pa"
-        run_s, computed = strain_at(run, record)
+        run_s, computed = strain_at(run, record, probes(record.is_strain))
     else:
         parts, unit = ["slip"], "m"
         run_s, computed = slip_at(run, record)
@@ -197,11 +199,12 @@ def traces_of(records: Iterable[Gauge | SlipSensor | Channel], run: OpenRun) -> 
     if not given:
         raise CaseError("records is empty")
     made, notes = [], []
+    probes = cache(partial(probes_of, run))  # reading them takes longer than all else
     for k, record in enumerate(given):
         of = sensor_of(record) if isinstance(record, Channel) else record
         if not isinstance(of, Gauge | SlipSensor):
             raise CaseError(f"records[{k}] is {shown(record)}; it must be a gauge, or a channel of slip")
-        trace = trace_of(of, run)
+        trace = trace_of(of, run, probes)
         changes = [bool(np.ptp(row) > 0) for row in trace.measured]
         if constant := [part for part, does in zip(trace.parts, changes, strict=True) if not does]:
             notes.append(f"{trace.name}: {', '.join(constant)} does not change: left out")

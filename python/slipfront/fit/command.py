@@ -23,6 +23,7 @@ from slipfront.compare.command import (
 from slipfront.compare.kinds import Cycles, Kind, Record
 from slipfront.files import DataError, exists, is_folder, read_json_table
 from slipfront.fit.fitting import RUNS, Asked, Fitting
+from slipfront.fit.mesh import finer_of
 from slipfront.fit.outcome import outcome_of, write_results
 from slipfront.fit.space import Space, space_of
 from slipfront.sweep.command import once_each
@@ -193,7 +194,7 @@ def work(options: argparse.Namespace, arguments: Sequence[str], output: command.
     for line in lines:
         how.tell(line)
     result = fitting.carry_out(first, BATCH_A_KEY * space.n, how.tell)
-    outcome = outcome_of(options, asked, fitting, result)
+    outcome = outcome_of(options, asked, fitting, result, finer_of(fitting, result))
     write_results(options.output, outcome, result)
     return [] if options.quiet else [*outcome.lines, f"results: {options.output}"]
 

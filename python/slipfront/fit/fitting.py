@@ -149,11 +149,11 @@ class Fitting:
             if point.name in why_not:
                 ran.why_not, ran.is_refused = why_not[point.name], True
             else:
-                self.observe(ran)
+                self.observe(ran, self.folder / RUNS)
             self.ran.append(ran)
 
-    def observe(self, ran: Ran) -> None:
-        folder = self.folder / RUNS
+    def observe(self, ran: Ran, folder: Path) -> None:
+        """folder: of the sweep that has the run."""
         place = places.place_of(folder, ran.point)
         wrong = places.what_is_wrong(place, ran.point)
         if wrong is not None:
@@ -227,21 +227,21 @@ class Fitting:
 
     def of_runs(self, computed: Sequence[np.ndarray]) -> np.ndarray:
         """log L of runs; -inf where one lacks a value. [runs]"""
-        total = np.zeros(len(computed[0]))
-        for part, rows in zip(self.parts, computed, strict=True):
-            left = part.left(part.reduced(part.measured), part.reduced(rows))
-            total += part.log_likelihood((left**2).sum(axis=1), part.least_scale**2)
-        return np.where(np.isfinite(total), total, -np.inf)
+        return log_likelihood(self.parts, computed)
 
     # Rounds.
 
     def emulator(self) -> tuple[Emulator, np.ndarray, np.ndarray]:
         """With the shares of usable runs and their log L."""
         self.find_parts()
+        return self.trained(self.parts)
+
+    def trained(self, parts: list[Part]) -> tuple[Emulator, np.ndarray, np.ndarray]:
+        """The same of parts with other measured values."""
         usable = self.usable
         computed = self.computed(usable)
         shares = np.array([ran.share for ran in usable])
-        logs = self.of_runs(computed)
+        logs = log_likelihood(parts, computed)
         n = self.space.n
         least = (n + 1) * (n + 2)  # twice the terms of the emulator's polynomial
         order = np.argsort(-logs)
@@ -252,7 +252,7 @@ class Fitting:
         training = np.array([*chosen, *extra], dtype=int)
         used = {id(ran) for ran in usable}
         lost = np.array([ran.share for ran in self.ran if id(ran) not in used]).reshape(-1, n)
-        made = Emulator(self.parts, shares[training], [rows[training] for rows in computed], lost, MARGIN)
+        made = Emulator(parts, shares[training], [rows[training] for rows in computed], lost, MARGIN)
         return made, shares, logs
 
     def sample(self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, steps: int, heat: float = 1.0
@@ -431,6 +431,15 @@ class Fitting:
                 "none: they do not count"
             )
         return told
+
+
+def log_likelihood(parts: Sequence[Part], computed: Sequence[np.ndarray]) -> np.ndarray:
+    """Of runs that computed values [runs, values of the part] for each part. [runs]"""
+    total = np.zeros(len(computed[0]))
+    for part, rows in zip(parts, computed, strict=True):
+        left = part.left(part.reduced(part.measured), part.reduced(rows))
+        total += part.log_likelihood((left**2).sum(axis=1), part.least_scale**2)
+    return np.where(np.isfinite(total), total, -np.inf)
 
 
 def words(share: np.ndarray, space: Space) -> str:

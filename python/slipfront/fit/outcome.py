@@ -28,7 +28,10 @@ from slipfront.files import read_toml
 from slipfront.fit.combinations import Combined, combinations, findings, number
 from slipfront.fit.fitting import BETTER, RUNS, Asked, Fitting, Result
 from slipfront.fit.likelihood import Part
+from slipfront.fit.mesh import KEY as ELEMENT_SIZE
+from slipfront.fit.mesh import Finer
 from slipfront.fit.posterior import Marginal, at_an_end, correlations, marginals
+from slipfront.fit.space import Space
 from slipfront.opened_sequence import opened
 from slipfront.report.page import Page, rendered, section, warnings_list, words
 from slipfront.report.tables import table
@@ -41,6 +44,7 @@ ALIKE = 4.0  # times, by which what is left of a part counts as fewer, from whic
 MOST_SAMPLES = 4000  # of posterior.csv
 AGREED = 1.0  # of log L, to which runs and what was expected of them agree
 FEW = 200  # independent samples
+MOVED = 1.0  # of a key's standard deviation, by which a finer mesh may move it
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,7 @@ class Outcome:
     """A fit in words and numbers, with what its page shows."""
 
     keys: list[Marginal]
+    finer: list[Marginal]  # of the keys, as a finer mesh is expected to give them; may be empty
     combined: list[Combined]
     entries: dict[str, Any]  # of fit.json
     lines: list[str]  # to print
@@ -159,7 +164,26 @@ def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
     return told
 
 
-def outcome_of(options: argparse.Namespace, asked: Asked, fitting: Fitting, result: Result) -> Outcome:
+def mesh_doubts(space: Space, samples: np.ndarray, finer: Finer | str) -> list[str]:
+    """What a finer mesh would change."""
+    if isinstance(finer, str):
+        return [f"what the mesh moves is not known: {finer}"]
+    moved = (np.median(finer.samples, axis=0) - np.median(samples, axis=0)) / samples.std(axis=0)
+    to = space.values(np.median(finer.samples, axis=0)[None])[0]
+    told = [
+        f"{key} to {number(value)}, by {abs(by):.2g} of its standard deviations"
+        for key, value, by in zip(space.keys, to, moved, strict=True)
+        if abs(by) > MOVED
+    ]
+    if not told:
+        return []
+    size = f"{ELEMENT_SIZE} = {finer.element_size_m:g}"
+    return [f"{size} would move {'; '.join(told)}: fit again with it"]
+
+
+def outcome_of(
+    options: argparse.Namespace, asked: Asked, fitting: Fitting, result: Result, finer: Finer | str
+) -> Outcome:
     space, samples, best = result.space, result.samples, result.best
     place = places.place_of(fitting.folder / RUNS, best.point)
     case = flattened(read_toml(place / places.CASE))
@@ -175,7 +199,8 @@ def outcome_of(options: argparse.Namespace, asked: Asked, fitting: Fitting, resu
         except Error as error:
             pictures = []
             told.append(f"the best run cannot be shown beside the records: {error}")
-    notes = doubts_of(result, keys)
+    notes = doubts_of(result, keys) + mesh_doubts(space, samples, finer)
+    of_finer = [] if isinstance(finer, str) else marginals(space, finer.samples)
     check = result.check
     values = {key: float(value) for key, value in best.point.values.items()}  # type: ignore[arg-type]
     lines = key_lines(keys, values)
@@ -192,6 +217,8 @@ def outcome_of(options: argparse.Namespace, asked: Asked, fitting: Fitting, resu
         "parameters": {of.name: entry(of) | {"is_determined": of.is_determined} for of in keys},
         "combinations": {one.of.name: entry(one.marginal) | {"unit": one.of.unit, "clear": one.clear}
                          for one in combined},
+        "finer_mesh": None if isinstance(finer, str) else {
+            "element_size_m": finer.element_size_m, **{of.name: entry(of) for of in of_finer}},
         "correlations": correlations(samples).round(6).tolist(),
         "best": {"values": values, "log_likelihood": float(result.log_likelihood.max()),
                  "folder": f"{RUNS}/{places.POINTS}/{best.point.name}"},
@@ -213,8 +240,8 @@ def outcome_of(options: argparse.Namespace, asked: Asked, fitting: Fitting, resu
         "findings": told,
         "notes": notes,
     }  # fmt: skip
-    return Outcome(keys, combined, entries, [*lines, *told, *(f"note: {note}" for note in notes)], notes,
-                   pictures, place)  # fmt: skip
+    lines += [*told, *(f"note: {note}" for note in notes)]
+    return Outcome(keys, of_finer, combined, entries, lines, notes, pictures, place)
 
 
 def options_range(of: Any) -> dict[str, Any]:
@@ -238,18 +265,19 @@ def plain(value: Any) -> Any:
 
 def page_of(outcome: Outcome, corner: Drawing) -> Page:
     rows = []
+    finer = {of.name: number(of.median) for of in outcome.finer}
     for of in outcome.keys:
         (low, high), (low68, high68) = of.intervals[0.90], of.intervals[0.68]
         best = number(outcome.entries["best"]["values"][of.name])
         rows.append([words(of.name), number(of.median), f"{number(low68)} to {number(high68)}",
-                     f"{number(low)} to {number(high)}", best])  # fmt: skip
-    head = ["key or combination", "median", "68 %", "90 %", "best run"]
+                     f"{number(low)} to {number(high)}", best, finer.get(of.name, "–")])  # fmt: skip
+    head = ["key or combination", "median", "68 %", "90 %", "best run", "median, elements half as large"]
     image = b64encode(corner.rendered("svg")).decode()
     picture = f'<img src="data:image/svg+xml;base64,{image}" alt="posterior" style="max-width:100%">'
     for one in outcome.combined:
         of, unit = one.marginal, f" {one.of.unit}" if one.of.unit else ""
         ends = (" to ".join(map(number, of.intervals[level])) + unit for level in (0.68, 0.90))
-        rows.append([words(of.name), number(of.median) + unit, *ends, "–"])
+        rows.append([words(of.name), number(of.median) + unit, *ends, "–", "–"])
     told = "".join(f"<p>{words(line)}.</p>" for line in outcome.entries["findings"])
     parts = []
     for name, of in outcome.entries["parts"].items():
