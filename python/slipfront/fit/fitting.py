@@ -32,7 +32,7 @@ from slipfront.sweep.sweeping import How, carry_out, refused
 RUNS = "runs"
 PLAUSIBLE = 20.0  # below the best logarithm of the likelihood, within which runs train the emulator
 MOST_TRAINING = 300
-MARGIN = 0.1  # of the emulator's box
+MARGIN = 0.5  # of the emulator's box
 MOST_NOISE = 0.5  # of log L that the runs' own noise excuses: a poor emulator takes what it misses for noise
 AGREE = 0.4  # root mean square of what is expected of log L less what runs have
 STEPS, LAST_STEPS = 300, 1500
@@ -297,6 +297,8 @@ class Fitting:
                     emulator, shares, logs = self.emulator()
             rounds += 1
             disagreement, noise = self.round(emulator, shares, logs, batch)
+            if disagreement == np.inf and len(self.ran) + batch <= self.most_runs:
+                self.step_from_best(tell)
 
     def round(
         self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, batch: int
@@ -333,13 +335,25 @@ class Fitting:
         shares = zip(self.space.keys, np.maximum(below, above), strict=True)
         return [key for key, share in shares if share > BEYOND]
 
+    def step_from_best(self, tell: Callable[[str], None]) -> None:
+        """Least squares from the best run, where the emulator does not lead there: with steps as wide as the
+        best runs are apart."""
+        self.find_parts()
+        usable = self.usable
+        order = np.argsort(-self.of_runs(self.computed(usable)))[: self.space.n + 2]
+        near = np.array([usable[k].share for k in order])
+        self.step(near[0], np.clip(near.std(axis=0), 1e-3, 0.05), tell)
+
     def least_squares(
         self, emulator: Emulator, samples: np.ndarray, tell: Callable[[str], None]
     ) -> Check | None:
-        """Gauss's and Newton's step by central differences of runs."""
+        """From the most probable place."""
         some = samples[self.rng.integers(len(samples), size=500)]
         start = some[int(np.argmax(emulator.log_likelihood(some)))]
-        deviation = np.maximum(samples.std(axis=0), 1e-4)
+        return self.step(start, np.maximum(samples.std(axis=0), 1e-4), tell)
+
+    def step(self, start: np.ndarray, deviation: np.ndarray, tell: Callable[[str], None]) -> Check | None:
+        """Gauss's and Newton's step by central differences of runs, deviations apart."""
         steps = np.diag(np.minimum(deviation, 0.5 * np.maximum(np.minimum(start, 1 - start), 1e-3)))
         tried = np.concatenate([start[None], start + steps, start - steps])
         tell(f"least squares: {len(tried) + 1} runs")
