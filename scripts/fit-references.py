@@ -115,7 +115,7 @@ def rows_of(problem: Problem, name: str, found: dict[str, Any]) -> list[list[str
     """A row per free key."""
     known = read_toml(CASES / problem.case)["friction"]
     begun = [f"{problem.title}, {problem.element_mm:g} mm", name]
-    ended = [str(found["runs"]["all"]), f"{found['wall_s'] / 60:.1f}"]
+    ended = [str(found["runs"]["all"])]
     rows = []
     for key in problem.free:
         of, truth = found["parameters"][key], known[key.removeprefix("friction.")]
@@ -134,7 +134,7 @@ def rows_of(problem: Problem, name: str, found: dict[str, Any]) -> list[list[str
                 *ended,
             ]
         )
-        begun, ended = ["", ""], ["", ""]
+        begun, ended = ["", ""], [""]
     return rows
 
 
@@ -144,7 +144,7 @@ def table_of(problems: Sequence[Problem], folder: Path) -> str:
         for name, found in fits_of(problem, folder):
             rows += rows_of(problem, name, found)
     header = ["problem, elements", "records", "key", "known", "median", "90 %", "off by",
-              "elements half as large", "runs", "minutes"]  # fmt: skip
+              "elements half as large", "runs"]  # fmt: skip
     return table(header, rows)
 
 

@@ -309,6 +309,7 @@ REFUSED = {
     "no record has an event 3": [*free(), "--fit-events", "3"],
     "--thickness-m counts with": [*free(), "--thickness-m", "0.1"],
     "is a whole number from 1 on": [*free(), "--most", "0"],
+    "--first is 32 runs, more than --most, 20": [*free(), "--most", "20"],
 }
 
 

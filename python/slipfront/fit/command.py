@@ -162,11 +162,18 @@ def write_request(options: argparse.Namespace, arguments: Sequence[str]) -> None
     write_whole(options.output / REQUEST, json.dumps({"arguments": told}, indent=2) + "\n")
 
 
+def first_and_most(options: argparse.Namespace, space: Space) -> tuple[int, int]:
+    """Runs over the whole ranges, and runs at most."""
+    return options.first or FIRST_A_KEY * space.n, options.most or MOST_A_KEY * space.n
+
+
 def fitting_of(options: argparse.Namespace, space: Space, asked: Asked, how: How) -> Fitting:
     settings = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
     if both := settings.keys() & space.keys:
         raise DataError(f"{min(both)} is both free and set")
-    most = options.most or MOST_A_KEY * space.n
+    first, most = first_and_most(options, space)
+    if first > most:
+        raise DataError(f"--first is {first} runs, more than --most, {most}")
     return Fitting(options.case, settings, space, asked, options.output, how, most)
 
 
@@ -185,7 +192,7 @@ def work(options: argparse.Namespace, arguments: Sequence[str], output: command.
     workers = options.workers or default_workers()
     how = How(workers, options.scheduler, None, options.quiet, output.say, has_tables=False)
     fitting = fitting_of(options, space, asked, how)
-    first = options.first or FIRST_A_KEY * space.n
+    first, _ = first_and_most(options, space)
     if not is_restarted:
         write_request(options, arguments)
     if options.slurm is not None:

@@ -441,8 +441,8 @@ class Fitting:
             )
         if usable and (n := self.n_mismatched(usable[0])):
             told.append(
-                f"{n} places of the record have no front in any of the runs, or one where the record has "
-                "none: they do not count"
+                "places of the record that do not count, as none of the runs has a front there, or all have "
+                f"one where the record has none: {n}"
             )
         return told
 
