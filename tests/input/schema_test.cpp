@@ -94,10 +94,10 @@ auto members(const Case& c) {
                regularisation, contact, event, trigger, nucleation, sequence, time, fronts, output, probes] =
       c;
   return std::tuple(title, members(plate), members<5>(material), members(machine), members(base),
-                    members(loading), members(prestress), members(friction), members(friction_along_x),
-                    tip, members<4>(regularisation), contact, event, members<6>(trigger),
-                    members<9>(nucleation), members<7>(sequence), members<9>(time), members<7>(fronts),
-                    members<6>(output), members<4>(probes));
+                    members(loading), members(prestress), members(friction), members(friction_along_x), tip,
+                    members<4>(regularisation), contact, event, members<6>(trigger), members<9>(nucleation),
+                    members<7>(sequence), members<9>(time), members<7>(fronts), members<6>(output),
+                    members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
@@ -535,9 +535,10 @@ constexpr Refused refused[] = {
     {"[loading]\nmean_pressure_Pa = 1e6\nnormal_force_N_per_m = 1e5\n",
      "c.toml:2: loading.mean_pressure_Pa applies only",
      "neither loading.normal_force_N_per_m nor loading.pressures_Pa"},
-    {"[loading]\npressures_x_m = [0]\npressures_Pa = [1e6]\n",
-     "c.toml:2: loading.pressures_x_m applies only", "loading.normal_stiffness_Pa_per_m = 0"},
-    {"[loading]\nnormal_stiffness_Pa_per_m = 0\nmean_pressure_Pa = 1e6\npressures_x_m = [0]\npressures_Pa = [1e6]\n",
+    {"[loading]\npressures_x_m = [0]\npressures_Pa = [1e6]\n", "c.toml:2: loading.pressures_x_m applies only",
+     "loading.normal_stiffness_Pa_per_m = 0"},
+    {"[loading]\nnormal_stiffness_Pa_per_m = 0\nmean_pressure_Pa = 1e6\npressures_x_m = [0]\npressures_Pa = "
+     "[1e6]\n",
      "c.toml:4: loading.pressures_x_m applies only", "nor mean_pressure_Pa"},
     {"[loading]\ntilt_difference_m = 1e-5\n", "c.toml:2: loading.tilt_difference_m applies only",
      "loading.normal_force_N_per_m or mean_pressure_Pa"},
