@@ -33,6 +33,7 @@ LEAST_SHARED = 0.5  # of the shorter of record and run
 SAME_PLACE_M = 1e-6
 MOST_SHIFTS = 4000  # that are tried, before the best is refined
 MOST_TIMES = 1000  # of a trace in that search
+AT_A_TIME = 64  # shifts, for the memory that these take
 MOST_UNCOVERED = 0.9  # share of a record below which its cover is told
 
 
@@ -68,14 +69,30 @@ class Trace:
             record, difference = (a - a.mean(axis=1, keepdims=True) for a in (record, difference))
         return own_s[at], record, record - difference
 
-    def misfit(self, shift_s: float) -> np.ndarray:
+    def misfits(self, shifts_s: np.ndarray) -> np.ndarray:
         """Of each part: rms of the difference over that of the record; infinite where they share few
-        times."""
-        _, record, run = self.both(shift_s)
-        if record.shape[1] == 0:
-            return np.full(len(self.parts), np.inf)
-        power = np.maximum((record**2).mean(axis=1), 1e-300)
-        return np.sqrt(((record - run) ** 2).mean(axis=1) / power)
+        times. [shifts, parts]"""
+        own_s = self.time_s + shifts_s[:, None]
+        at = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
+        n = np.maximum(at.sum(axis=1), 1)
+        shared_s = np.where(at, own_s, -np.inf).max(axis=1) - np.where(at, own_s, np.inf).min(axis=1)
+        is_short = shared_s < LEAST_SHARED * min(np.ptp(self.time_s), np.ptp(self.run_s))
+
+        def square(values: np.ndarray) -> np.ndarray:
+            """Mean square about the mean, where both are. [shifts]"""
+            mean = (values * at).sum(axis=1) / n
+            return (at * (values - mean[:, None]) ** 2).sum(axis=1) / n
+
+        found = np.empty((len(shifts_s), len(self.parts)))
+        for k, (measured, computed) in enumerate(zip(self.measured, self.computed, strict=True)):
+            left = square(measured - np.interp(own_s, self.run_s, computed))
+            power = square(np.broadcast_to(measured, own_s.shape))
+            found[:, k] = np.where(is_short, np.inf, np.sqrt(left / np.maximum(power, 1e-300)))
+        return found
+
+    def misfit(self, shift_s: float) -> np.ndarray:
+        """The same of one shift. [parts]"""
+        return self.misfits(np.array([shift_s]))[0]
 
     def error(self, shift_s: float) -> np.ndarray:
         """Standard errors of these; differences that follow one another count as fewer."""
@@ -245,9 +262,12 @@ def best_shift(traces: list[Trace], within_s: float) -> float:
     neighbours of the best by all."""
     first, last = shifts_of(traces, within_s)
 
-    def cost(shift_s: float, of: list[Trace] = traces) -> float:
-        found = float(np.mean([np.mean(trace.misfit(shift_s) ** 2) for trace in of]))
-        return found if np.isfinite(found) else np.inf
+    def costs(shifts_s: np.ndarray, of: list[Trace]) -> np.ndarray:
+        found = np.mean([(trace.misfits(shifts_s) ** 2).mean(axis=1) for trace in of], axis=0)
+        return np.where(np.isfinite(found), found, np.inf)
+
+    def cost(shift_s: float) -> float:
+        return float(costs(np.array([shift_s]), traces)[0])
 
     if within_s == 0:
         return 0.0
@@ -257,7 +277,8 @@ def best_shift(traces: list[Trace], within_s: float) -> float:
     n = int(np.ceil((last - first) / max(step, (last - first) / MOST_SHIFTS)))
     shifts = np.union1d(np.linspace(first, last, n + 1), [0.0] if first <= 0 <= last else [])
     thin = [trace.thinned() for trace in traces]
-    k = int(np.argmin([cost(s, thin) for s in shifts]))
+    some = np.array_split(shifts, -(-len(shifts) // AT_A_TIME))
+    k = int(np.argmin(np.concatenate([costs(of, thin) for of in some])))
     ends = shifts[max(k - 1, 0)], shifts[min(k + 1, len(shifts) - 1)]
     refined = minimize_scalar(cost, bounds=ends, method="bounded", options={"xatol": 1e-6 * step}).x
     return float(min((shifts[k], refined), key=cost))
