@@ -167,11 +167,10 @@ def table_of(fits: list[tuple[Twin, dict[str, Any]]], folder: Path) -> str:
     header = ["key", *(f"{of} {level} %" for level in LEVELS), "interval of 90 % over the range",
               "truth less mean over deviation, rms"]  # fmt: skip
     runs = [found["runs"]["all"] for _, found in fits]
-    minutes = [found["wall_s"] / 60 for _, found in fits]
     doubted = sum(any("agree" in note for note in found["notes"]) for _, found in fits)
     return table(header, rows) + (
         f"\n{np.median(runs):.0f} runs a twin ({min(runs)} to {max(runs)}), the first "
-        f"{FIRST_A_KEY * len(FREE)} in common; {np.median(minutes):.1f} minutes a twin on one processor. "
+        f"{FIRST_A_KEY * len(FREE)} in common. "
         f"{doubted} fits end in doubt whether their runs agree with what was expected.\n"
     )
 

@@ -8,7 +8,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -52,17 +51,16 @@ def fit(
     *options: str,
     first: Path | None = None,
 ) -> dict[str, Any]:
-    """fit.json of a fit with `wall_s`; one that ended before is kept, one that did not begins anew, with the
-    runs of `first`. Of its runs only what it found is kept."""
-    told, timed = folder / "fit.json", folder / "wall_s.txt"
-    if not timed.exists():
+    """fit.json of a fit; one that ended before is kept, one that did not begins anew, with the runs of `first`.
+    Of its runs only what it found is kept."""
+    told = folder / "fit.json"
+    if not told.exists() or (folder / RUNS).exists():
         shutil.rmtree(folder, ignore_errors=True)
         if first is not None:
             begin(folder, first)
         words = [str(case), *map(str, records), "-o", str(folder), "-q", *options]
         words += [word for key, text in free.items() for word in ("--free", f"{key}={text}")]
         here = os.environ | {"PYTHONPATH": str(ROOT / "python"), "OMP_NUM_THREADS": "1"}
-        begun = time.monotonic()
         done = subprocess.run(
             [sys.executable, "-m", "slipfront", "fit", *words], capture_output=True, text=True, env=here
         )
@@ -70,9 +68,8 @@ def fit(
             lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
             raise DataError(f"{folder}: {lines[-1]}")
         shutil.rmtree(folder / RUNS)
-        timed.write_text(f"{time.monotonic() - begun:.1f}\n", encoding="utf-8")
     found: dict[str, Any] = json.loads(told.read_text(encoding="utf-8"))
-    return found | {"wall_s": float(timed.read_text(encoding="utf-8"))}
+    return found
 
 
 def share_of_range(found: Mapping[str, Any], key: str, values: Sequence[float]) -> np.ndarray:
