@@ -51,7 +51,7 @@ def fit(
     *options: str,
     first: Path | None = None,
 ) -> dict[str, Any]:
-    """fit.json of a fit; one that ended before is kept, one that did not begins anew, with the runs of `first`.
+    """fit.json of a fit; one that ended is kept, one that did not begins anew, with the runs of `first`.
     Of its runs only what it found is kept."""
     told = folder / "fit.json"
     if not told.exists() or (folder / RUNS).exists():
