@@ -40,7 +40,6 @@ def begin(folder: Path, runs: Path) -> None:
     # Links, but for the lock: that of one fit would hold all.
     left_out = shutil.ignore_patterns(LOCK)
     shutil.copytree(runs, folder / RUNS, copy_function=os.link, ignore=left_out)
-    (folder / "request.json").write_text("{}", encoding="utf-8")  # by which the fit knows its folder
 
 
 def fit(
@@ -53,8 +52,8 @@ def fit(
 ) -> dict[str, Any]:
     """fit.json of a fit; one that ended is kept, one that did not begins anew, with the runs of `first`.
     Of its runs only what it found is kept."""
-    told = folder / "fit.json"
-    if not told.exists() or (folder / RUNS).exists():
+    result = folder / "fit.json"
+    if not result.exists() or (folder / RUNS).exists():
         shutil.rmtree(folder, ignore_errors=True)
         if first is not None:
             begin(folder, first)
@@ -68,7 +67,7 @@ def fit(
             lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
             raise DataError(f"{folder}: {lines[-1]}")
         shutil.rmtree(folder / RUNS)
-    found: dict[str, Any] = json.loads(told.read_text(encoding="utf-8"))
+    found: dict[str, Any] = json.loads(result.read_text(encoding="utf-8"))
     return found
 
 

@@ -152,16 +152,23 @@ void check_prestress(const Case& config, const Document& document) {
                     kind, Key("plate.sides"));
 }
 
+/// Refuses lists of another length than their places', and places that do not rise.
+void check_along(const Key& places_key, const std::vector<double>& places, const char* unit,
+                 const Key& values_key, const std::vector<double>& values, const char* one_each) {
+  if (places.size() != values.size())
+    throw UserError("{} has {} values and {} has {}; give one {}", places_key, places.size(), values_key,
+                    values.size(), one_each);
+  const auto stop = std::ranges::adjacent_find(places, std::greater_equal<>());
+  if (stop != places.end())
+    throw UserError("{} must rise: {:.12g} {} comes before {:.12g} {}", places_key, *stop, unit, *(stop + 1),
+                    unit);
+}
+
 void check_top_pressure(const statics::TopPressure& pressure, double width_m) {
   const auto& [x_m, p_Pa] = pressure;
   const Key places("loading.pressures_x_m"), pressures("loading.pressures_Pa");
-  if (x_m.size() != p_Pa.size())
-    throw UserError("{} has {} values and {} has {}; give one pressure per place", places, x_m.size(),
-                    pressures, p_Pa.size());
+  check_along(places, x_m, "m", pressures, p_Pa, "pressure per place");
   if (p_Pa.empty()) return;
-  const auto stop = std::ranges::adjacent_find(x_m, std::greater_equal<>());
-  if (stop != x_m.end())
-    throw UserError("{} must rise: {:.12g} m comes before {:.12g} m", places, *stop, *(stop + 1));
   if (x_m.back() > width_m)
     throw UserError("{} reaches {:.12g} m, beyond {} = {:.12g} m", places, x_m.back(), Key("plate.width_m"),
                     width_m);
@@ -458,12 +465,7 @@ void check_machine(const Case& config) {
 void check_path(const Sequence::Path& path) {
   const auto& [times_s, shears_m] = path;
   const Key times("sequence.times_s"), shears("sequence.shears_m");
-  if (times_s.size() != shears_m.size())
-    throw UserError("{} has {} values and {} has {}; give one displacement per time", times, times_s.size(),
-                    shears, shears_m.size());
-  const auto stop = std::ranges::adjacent_find(times_s, std::greater_equal<>());
-  if (stop != times_s.end())
-    throw UserError("{} must rise: {:.12g} s comes before {:.12g} s", times, *stop, *(stop + 1));
+  check_along(times, times_s, "s", shears, shears_m, "displacement per time");
   const auto fall = std::ranges::adjacent_find(shears_m, std::greater<>());
   if (fall != shears_m.end())
     throw UserError("{} must not fall: {:.12g} m comes before {:.12g} m", shears, *fall, *(fall + 1));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/interpolation.hpp"
 #include "base/numbers.hpp"
 
 namespace slipfront::problem {
@@ -20,10 +21,7 @@ LoadingPath::LoadingPath(const input::Sequence& sequence, double shear_speed_m_p
 
 double LoadingPath::shear_m(double time_s) const {
   if (times_s_.empty()) return speed_m_per_s_ * time_s;
-  const auto next = std::ranges::upper_bound(times_s_, time_s) - times_s_.begin();
-  if (next == std::ssize(times_s_)) return shears_m_.back();
-  const double part = (time_s - times_s_[next - 1]) / (times_s_[next] - times_s_[next - 1]);
-  return shears_m_[next - 1] + part * (shears_m_[next] - shears_m_[next - 1]);
+  return interpolated(times_s_, shears_m_, time_s);
 }
 
 double LoadingPath::time_s(double shear_m, double after_s) const {

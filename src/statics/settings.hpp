@@ -46,8 +46,8 @@ struct Loading {
   /// At most one of the three, of the state before any shear; then tilt_left_m and tilt_right_m do not count.
   std::optional<double> normal_force_N_per_m = {}, mean_pressure_Pa = {};
   TopPressure top_pressure = {};
-  double tilt_difference_m =
-      0;  ///< with the first two: how much further down the left end goes than the right one
+  /// With the first two: how much further down the left end goes than the right one.
+  double tilt_difference_m = 0;
   /// Force of the subcritical state, at most one of the two; then critical_margin does not count.
   std::optional<double> shear_force_N_per_m = {}, shear_over_critical = {};
 };

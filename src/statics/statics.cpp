@@ -489,11 +489,11 @@ void Statics::press_down(const ElasticBody& plate_body, const std::optional<Elas
   tilted_.below_u_per_shear = solid::Field(tilted_.below_u_m.size());
 
   for (std::size_t k = 0; k < loaded.size(); ++k) {
-    if (is_free) tilt.u_x_m[k] = tilted_.u_m.x[loaded[k]];
-    tilt.u_y_m[k] = under_jacks ? tilted_.u_m.y[loaded[k]] : tilt.u_y_m[k] - pressed_m;
+    tilt.u_x_m[k] = tilted_.u_m.x[loaded[k]];
+    tilt.u_y_m[k] = tilted_.u_m.y[loaded[k]];
   }
-  loading_.tilt_left_m = under_jacks ? -tilt.u_y_m.front() : loading_.tilt_left_m + pressed_m;
-  loading_.tilt_right_m = under_jacks ? -tilt.u_y_m.back() : loading_.tilt_right_m + pressed_m;
+  loading_.tilt_left_m = -tilt.u_y_m.front();
+  loading_.tilt_right_m = -tilt.u_y_m.back();
   for (const auto n : boundary_.pushed) tilt.pushed_u_x_m.push_back(tilted_.u_m.x[n]);
   tilted_top_ = tilt;
 }

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "statics/top_pressure.hpp"
 
-#include <algorithm>
 #include <utility>
 
-namespace slipfront::statics {
+#include "base/interpolation.hpp"
 
-double TopPressure::at_Pa(double at_m) const {
-  const auto next = std::ranges::upper_bound(x_m, at_m) - x_m.begin();
-  if (next == 0) return p_Pa.front();
-  if (next == std::ssize(x_m)) return p_Pa.back();
-  const double part = (at_m - x_m[next - 1]) / (x_m[next] - x_m[next - 1]);
-  return p_Pa[next - 1] + part * (p_Pa[next] - p_Pa[next - 1]);
-}
+namespace slipfront::statics {
 
 std::vector<double> TopPressure::forces_N_per_m(const std::vector<double>& nodes_x_m) const {
   std::vector<double> forces(nodes_x_m.size(), 0.0);
@@ -24,7 +17,8 @@ std::vector<double> TopPressure::forces_N_per_m(const std::vector<double>& nodes
       const double middle_m = 0.5 * (from_m + to_m), sixth_m = (to_m - from_m) / 6;
       for (const auto& [at_m, weight_m] :
            {std::pair(from_m, sixth_m), {middle_m, 4 * sixth_m}, {to_m, sixth_m}}) {
-        const double share = (at_m - left_m) / (right_m - left_m), force = weight_m * at_Pa(at_m);
+        const double share = (at_m - left_m) / (right_m - left_m),
+                     force = weight_m * interpolated(x_m, p_Pa, at_m);
         forces[k] += (1 - share) * force;
         forces[k + 1] += share * force;
       }

@@ -16,9 +16,6 @@ struct TopPressure {
   std::vector<double> forces_N_per_m(const std::vector<double>& nodes_x_m) const;
   /// Its integral over an edge from 0 to a width, per unit thickness.
   double force_N_per_m(double width_m) const;
-
- private:
-  double at_Pa(double x_m) const;
 };
 
 }  // namespace slipfront::statics

@@ -298,7 +298,9 @@ def test_forces_and_stresses_are_those_of_the_sequence(sequence):
         slipfront.compare_cycles(sequence, begin_s | stress, thickness_m=0.01)
     with pytest.raises(slipfront.CaseError, match="has the shear as force and as stress; give one"):
         slipfront.compare_cycles(sequence, begin_s | forces | stress)
-    with pytest.raises(slipfront.CaseError, match="two behind the first 9 are needed: set skip_events"):
+    with pytest.raises(
+        slipfront.CaseError, match="two behind the first 9 are needed: give a lower skip_events"
+    ):
         slipfront.compare_cycles(sequence, begin_s | stress, skip_events=9)
 
 

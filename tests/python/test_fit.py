@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from dataclasses import replace
 
@@ -18,7 +19,7 @@ from slipfront.compare.misfit import Observed
 from slipfront.compare.onsets import onsets_at
 from slipfront.files import read_toml
 from slipfront.fit.combinations import combinations, findings
-from slipfront.fit.command import events, main
+from slipfront.fit.command import events, main, parse, restarted
 from slipfront.fit.emulator import Emulator
 from slipfront.fit.likelihood import alike_of, log_gammainc, part_of
 from slipfront.fit.mesh import Finer
@@ -108,6 +109,7 @@ def test_shares_are_those_of_the_ranges():
     some = np.random.default_rng(0).random((7, 2))
     np.testing.assert_allclose(space.shares(space.values(some)), some, atol=1e-12)
     first = space.sobol(32)
+    assert space_of({"friction.mu_k": "0.35:0.2"}).ranges["friction.mu_k"] == space.ranges["friction.mu_k"]
     assert np.array_equal(first[:16], space.sobol(16)) and len(np.unique(first, axis=0)) == 32
 
 
@@ -189,6 +191,11 @@ def test_what_is_not_determined_is_named():
 
 def test_events_of_a_command_line():
     assert events("3,5-7") == (3, 5, 6, 7)
+    wrong = {"3-": "is not N,M-K", "1-2000000000": "of seven digits at most", "5-3": "ranges rise",
+             "0-3": "from 1", "2,1-3": "names an event twice"}  # fmt: skip
+    for text, told in wrong.items():
+        with pytest.raises(argparse.ArgumentTypeError, match=told):
+            events(text)
 
 
 # The command
@@ -254,13 +261,64 @@ def test_same_command_runs_nothing_again(fitted, place, monkeypatch):
     folder, found = fitted
     points = sorted((folder / "runs/points").iterdir())
     before = [file.stat().st_mtime_ns for file in points]
-    n = found["runs"]["all"]
-    assert called(monkeypatch, place, "--restart", "out", "--most", n, "-q") == 0
-    assert [file.stat().st_mtime_ns for file in points] == before
-    again = json.loads((folder / "fit.json").read_text())
-    for key, of in found["parameters"].items():
-        low, high = of["interval_90"]
-        assert again["parameters"][key]["median"] == pytest.approx(of["median"], abs=0.3 * (high - low))
+    for arguments in (["--restart", "out"], ["./case.toml", place / "onsets.csv", *free(), "-o", "out"]):
+        (folder / "fit.json").unlink()
+        assert called(monkeypatch, place, *arguments, "-q") == 0
+        assert json.loads((folder / "fit.json").read_text()) == found
+        assert [file.stat().st_mtime_ns for file in points] == before
+
+
+def test_a_folder_is_of_one_fit(fitted, place, monkeypatch, capsys):
+    folder, _ = fitted
+    before = {file: file.read_bytes() for file in folder.iterdir() if file.is_file()}
+    other = [*free(FREE | {"friction.mu_k": "0.25:0.35"}), "--clock", "run"]
+    assert called(monkeypatch, place, "case.toml", "onsets.csv", *other, "-o", "out") == 2
+    assert "holds a fit with another --free and --clock" in capsys.readouterr().err
+    assert before == {file: file.read_bytes() for file in folder.iterdir() if file.is_file()}
+
+
+def test_places_that_hold_no_folder(place, tmp_path, monkeypatch, capsys):
+    (tmp_path / "letter").write_text("kept")
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    for where in ("letter", "letter/below", "link", "/dev/full", "/proc/nothing"):
+        arguments = ["case.toml", "onsets.csv", *free(), "-o", tmp_path / where]
+        assert called(monkeypatch, place, *arguments) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert str(tmp_path / where) in line
+    assert (tmp_path / "letter").read_text() == "kept" and not (tmp_path / "nowhere").exists()
+
+
+def test_no_more_runs_than_allowed(place, tmp_path, monkeypatch):
+    """Nor are they beyond the ranges, whose lower end is the most probable mu_k."""
+    narrow = FREE | {"friction.mu_k": "0.302:0.35"}
+    arguments = ["case.toml", "onsets.csv", *free(narrow), "-o", tmp_path / "fit", "-q"]
+    found = {}
+    for most in (38, 60):
+        assert called(monkeypatch, place, *arguments, "--most", most) == 0
+        found = json.loads((tmp_path / "fit/fit.json").read_text())
+        assert found["runs"]["all"] <= most
+        assert not any("holds a sweep" in note for note in found["notes"])
+    for point in (tmp_path / "fit/runs/points").iterdir():
+        case = flattened(read_toml(point / "case.resolved.toml"))
+        assert 0.302 <= case["friction.mu_k"] <= 0.35 and 2e-6 <= case["friction.d_c_m"] <= 8e-6
+    cut = "the lower end of its range cuts the posterior of friction.mu_k: widen the range"
+    assert cut in found["notes"]
+
+
+def test_a_script_for_slurm_replaces_its_like_alone(place, tmp_path, monkeypatch, capsys):
+    arguments = ["case.toml", "onsets.csv", *free(), "-o", tmp_path / "fit", "--slurm"]
+    before = (place / "case.toml").read_text()
+    assert called(monkeypatch, place, *arguments, "case.toml") == 2
+    assert "not a script of slipfront for Slurm: not replaced" in capsys.readouterr().err
+    assert (place / "case.toml").read_text() == before and not (tmp_path / "fit").exists()
+    for _ in range(2):
+        assert called(monkeypatch, place, *arguments, tmp_path / "jobs") == 0
+    script = (tmp_path / "jobs").read_text()
+    assert script.startswith("#!/bin/bash\n") and f"fit --restart {tmp_path / 'fit'}" in script
+    assert '--share "$SLURM_ARRAY_TASK_ID/32"' in script
+    # The fit goes on from there, without a script.
+    given = restarted(parse(["--restart", str(tmp_path / "fit")]))
+    assert given.slurm is None and given.records == [place / "onsets.csv"]
 
 
 def test_a_wrong_case_is_told(place, monkeypatch):
@@ -309,8 +367,13 @@ REFUSED = {
     "no record has an event 3": [*free(), "--fit-events", "3"],
     "--thickness-m counts with": [*free(), "--thickness-m", "0.1"],
     "is a whole number from 1 on": [*free(), "--most", "0"],
-    "--first is 32 runs, more than --most, 20": [*free(), "--most", "20"],
-}
+    "--most is 20 runs: fewer than --first, 32, and 6 of the last check": [*free(), "--most", "20"],
+    "--most is 99999999999 runs; 1000000 at most": [*free(), "--most", "99999999999"],
+    "friction.mu_k=-1e308:1e308: the range is too wide": ["--free", "friction.mu_k=-1e308:1e308"],
+    "friction.mu_k=1e-300:1e300:log: the range is too wide": ["--free", "friction.mu_k=1e-300:1e300:log"],
+    "--gain counts with traces alone": [*free(), "--gain", "free"],
+    "--free KEY=FROM:TO: not given": [],
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("told", REFUSED)
@@ -319,6 +382,22 @@ def test_what_is_refused(place, tmp_path, monkeypatch, capsys, told):
     assert called(monkeypatch, place, *arguments) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("slipfront fit: error: ") and told in line
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_table_of_events_beside_one_event(place, tmp_path, monkeypatch, capsys):
+    table = tmp_path / "events.csv"
+    pd.DataFrame({"begin_s": [1.0, 2.0, 3.0], "slip_m": 1e-6}).to_csv(table, index=False)
+    assert called(monkeypatch, place, "case.toml", table, *free(), "-o", tmp_path / "new") == 2
+    told = "events.csv: is compared with a sequence of events, and case.toml has one event"
+    assert told in capsys.readouterr().err and not (tmp_path / "new").exists()
+
+
+def test_a_record_under_two_names_is_refused(place, tmp_path, monkeypatch, capsys):
+    copy = tmp_path / "again.csv"
+    copy.write_bytes((place / "onsets.csv").read_bytes())
+    assert called(monkeypatch, place, "case.toml", "onsets.csv", copy, *free(), "-o", tmp_path / "new") == 2
+    assert f"{copy}: holds what onsets.csv holds; leave it out" in capsys.readouterr().err
 
 
 def test_folders_that_are_refused(place, tmp_path, monkeypatch, capsys):
@@ -365,6 +444,6 @@ def test_ends_of_runs_are_data(place, monkeypatch, tmp_path):
     assert called(monkeypatch, place, *arguments) == 0
     found = json.loads((tmp_path / "wide/fit.json").read_text())
     assert found["runs"]["left_out"] > 0
-    assert any("runs are left out; the first, at friction.mu_k = " in note for note in found["notes"])
+    assert any("runs are left out; the first, at friction.mu_k = " in line for line in found["findings"])
     low, high = found["parameters"]["friction.mu_k"]["interval_90"]
     assert 0.2 < low < 0.3 < 0.36 and high < 0.4

@@ -3,22 +3,20 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 import slipfront
-from common import ROOT, loaded_script
+from common import ROOT, built, loaded_script
 
 for package in ("emcee", "sklearn"):
     pytest.importorskip(package)
 
 
-@pytest.fixture(scope="module")
-def scripts():
-    sys.path.insert(0, str(ROOT / "scripts"))
-    yield loaded_script
-    sys.path.remove(str(ROOT / "scripts"))
+@pytest.fixture
+def scripts(monkeypatch):
+    monkeypatch.setenv("SLIPFRONT_PROGRAM", str(built()))
+    monkeypatch.syspath_prepend(str(ROOT / "scripts"))
+    return loaded_script
 
 
 @pytest.mark.slow  # a minute or two

@@ -111,7 +111,7 @@ def counting(of: Events, skipped: int, what: str) -> Events:
     if kept.sum() < skipped + 2:
         raise CaseError(
             f"{what} has {kept.sum()} events with a drop of {SHARE:g} of the largest or more; two behind the "
-            f"first {skipped} are needed: set skip_events, or load on"
+            f"first {skipped} are needed: give a lower skip_events, or more events"
         )
     return {name: values[kept][skipped:] for name, values in of.items()}
 

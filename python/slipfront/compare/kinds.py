@@ -83,6 +83,7 @@ class Kind(Protocol):
 
     name: str
     pools: bool  # whether several runs are compared together
+    of_sequence: bool | None  # compared with a sequence of events, not with one event; None: with both
     options: tuple[str, ...]  # those of the command that count with it
 
     def holds(self, names: Sequence[str]) -> bool:
@@ -137,6 +138,7 @@ def one_sequence(runs: list[Opened]) -> OpenSequence:
 class Traces:
     name = "Traces"
     pools = False
+    of_sequence: bool | None = False
     options: tuple[str, ...] = ("within_s", "shift_s", "zero_s", "low_pass_hz", "window_s", "event")
 
     def holds(self, names: Sequence[str]) -> bool:
@@ -202,6 +204,7 @@ class Traces:
 class Speeds:
     name = "Speed over stress ratio"
     pools = True
+    of_sequence: bool | None = None
     options: tuple[str, ...] = ("ratio_within",)
 
     def holds(self, names: Sequence[str]) -> bool:
@@ -249,6 +252,7 @@ class Speeds:
 class Cycles:
     name = "Stick-slip"
     pools = False
+    of_sequence: bool | None = True
     options: tuple[str, ...] = ("thickness_m", "drop_within_s", "drop_share", "skip_events")
 
     def holds(self, names: Sequence[str]) -> bool:
@@ -312,6 +316,7 @@ class Cycles:
 class Onsets:
     name = "Onsets"
     pools = False
+    of_sequence: bool | None = False
     options: tuple[str, ...] = ("never_slipped", "event")
 
     def holds(self, names: Sequence[str]) -> bool:

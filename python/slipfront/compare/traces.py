@@ -55,14 +55,19 @@ class Trace:
         each = -(-len(self.time_s) // MOST_TIMES)
         return replace(self, time_s=self.time_s[::each], measured=self.measured[:, ::each])
 
+    def shared(self, own_s: np.ndarray) -> np.ndarray:
+        """Which times of the record, on the run's clock, the run has as well; none where they are few.
+        [..., times]"""
+        at = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
+        last_s, first_s = np.where(at, own_s, -np.inf).max(axis=-1), np.where(at, own_s, np.inf).min(axis=-1)
+        least_s = LEAST_SHARED * min(np.ptp(self.time_s), np.ptp(self.run_s))
+        return at & (last_s - first_s >= least_s)[..., None]
+
     def both(self, shift_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Where both are: times, measured, computed, on the run's clock = the record's + shift, each about
         its own mean: gauges have no known zero. Empty where they share few times. [parts, times]"""
         own_s = self.time_s + shift_s
-        at = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
-        shared_s = np.ptp(own_s[at]) if at.any() else 0.0
-        if shared_s < LEAST_SHARED * min(np.ptp(own_s), np.ptp(self.run_s)):
-            at[:] = False
+        at = self.shared(own_s)
         record = self.measured[:, at]
         difference = record - np.array([np.interp(own_s[at], self.run_s, row) for row in self.computed])
         if at.any():
@@ -73,21 +78,19 @@ class Trace:
         """Of each part: rms of the difference over that of the record; infinite where they share few
         times. [shifts, parts]"""
         own_s = self.time_s + shifts_s[:, None]
-        at = (own_s >= self.run_s[0]) & (own_s <= self.run_s[-1])
-        n = np.maximum(at.sum(axis=1), 1)
-        shared_s = np.where(at, own_s, -np.inf).max(axis=1) - np.where(at, own_s, np.inf).min(axis=1)
-        is_short = shared_s < LEAST_SHARED * min(np.ptp(self.time_s), np.ptp(self.run_s))
+        at = self.shared(own_s)
+        n = at.sum(axis=1)
 
         def square(values: np.ndarray) -> np.ndarray:
             """Mean square about the mean, where both are. [shifts]"""
-            mean = (values * at).sum(axis=1) / n
-            return (at * (values - mean[:, None]) ** 2).sum(axis=1) / n
+            mean = (values * at).sum(axis=1) / np.maximum(n, 1)
+            return (at * (values - mean[:, None]) ** 2).sum(axis=1) / np.maximum(n, 1)
 
         found = np.empty((len(shifts_s), len(self.parts)))
         for k, (measured, computed) in enumerate(zip(self.measured, self.computed, strict=True)):
             left = square(measured - np.interp(own_s, self.run_s, computed))
             power = square(np.broadcast_to(measured, own_s.shape))
-            found[:, k] = np.where(is_short, np.inf, np.sqrt(left / np.maximum(power, 1e-300)))
+            found[:, k] = np.where(n == 0, np.inf, np.sqrt(left / np.maximum(power, 1e-300)))
         return found
 
     def misfit(self, shift_s: float) -> np.ndarray:

@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 import argparse
+import filecmp
 import json
 import os
+import re
 from collections.abc import Sequence
+from contextlib import suppress
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -20,22 +24,23 @@ from slipfront.compare.command import (
     read_all,
     require_of_use,
 )
-from slipfront.compare.kinds import Cycles, Kind, Record
+from slipfront.compare.kinds import Cycles, Kind, Onsets, Record, Traces
 from slipfront.files import DataError, exists, is_folder, read_json_table
-from slipfront.fit.fitting import RUNS, Asked, Fitting
+from slipfront.fit.fitting import RUNS, Asked, Fitting, runs_of_a_step
 from slipfront.fit.mesh import finer_of
 from slipfront.fit.outcome import outcome_of, write_results
 from slipfront.fit.space import Space, space_of
 from slipfront.sweep.command import once_each
 from slipfront.sweep.engine import default_workers
 from slipfront.sweep.folder import write_whole
-from slipfront.sweep.points import value_of
+from slipfront.sweep.points import MOST_POINTS, value_of
 from slipfront.sweep.sweeping import How, array_script
 
 NAME = "slipfront fit"
 REQUEST = "request.json"
 FIRST_A_KEY, BATCH_A_KEY, MOST_A_KEY = 16, 4, 100  # runs
 OF_RESTART = ("most", "workers", "scheduler", "quiet")  # on which no result of a run depends
+ANYHOW = (*OF_RESTART, "restart", "output", "slurm")  # that may differ from the fit which a folder holds
 DESCRIPTION = """Finds which values of a case's keys explain an experiment's records: runs at points over the
 ranges, then at those that the records leave, until what is left is known. Results in DIR: intervals,
 correlations, what is not determined, the best case, a page. docs/fit.md"""
@@ -69,16 +74,24 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
+def in_command(name: str) -> str:
+    """An argument as it is called on the command line."""
+    return name.upper() if name in ("case", "records") else command.option(name)
+
+
 def events(text: str) -> tuple[int, ...]:
     """Numbers and ranges of them."""
     found: list[int] = []
     for part in text.split(","):
-        first, _, last = part.partition("-")
-        if not first.strip().isdigit() or (last and not last.strip().isdigit()):
-            raise argparse.ArgumentTypeError(f"{text}: is not N,M-K")
-        found += range(int(first), int(last or first) + 1)
-    if not found or min(found) < 1 or len(set(found)) < len(found):
-        raise argparse.ArgumentTypeError(f"{text}: events are numbered from 1 and named once")
+        ends = re.fullmatch(r"\s*(\d{1,7})\s*(?:-\s*(\d{1,7})\s*)?", part, re.ASCII)
+        if not ends:
+            raise argparse.ArgumentTypeError(f"{text}: is not N,M-K, of numbers of seven digits at most")
+        first, last = int(ends[1]), int(ends[2] or ends[1])
+        if not 1 <= first <= last:
+            raise argparse.ArgumentTypeError(f"{text}: events are numbered from 1, ranges rise")
+        found += range(first, last + 1)
+    if len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(f"{text}: names an event twice")
     return tuple(found)
 
 
@@ -120,17 +133,54 @@ def asked_of(options: argparse.Namespace, read: list[tuple[Kind, Record]]) -> As
     return Asked(chosen, is_fitted, options)
 
 
+def require_of_fit(options: argparse.Namespace, kinds: set[Kind]) -> None:
+    """Refuses options of the fit that count with no record that is given, and records that count twice."""
+    for one, other in combinations(options.records, 2):
+        if filecmp.cmp(one, other, shallow=False):
+            raise DataError(f"{other}: holds what {one} holds; leave it out")
+    if options.gain == "free" and not any(isinstance(kind, Traces) for kind in kinds):
+        raise DataError("--gain counts with traces alone, and no record is such; leave it out")
+    if options.clock == "run" and not any(isinstance(kind, Traces | Onsets) for kind in kinds):
+        raise DataError("--clock counts with traces and onsets alone, and no record is such; leave it out")
+
+
 def require_sound(options: argparse.Namespace) -> None:
-    if options.case is None or not options.records or options.output is None or not options.free:
-        raise DataError(f"CASE, RECORDS, --free and --output DIR, or --restart DIR; see {NAME} --help")
+    needed = {"CASE": options.case, "RECORDS": options.records, "--free KEY=FROM:TO": options.free,
+              "--output DIR": options.output}  # fmt: skip
+    if missing := [name for name, value in needed.items() if not value]:
+        raise DataError(f"{', '.join(missing)}: not given; nor is --restart DIR; see {NAME} --help")
     if not exists(options.case):
         raise DataError(f"{options.case}: No such file or directory")
     for name in ("first", "most", "workers"):
         if getattr(options, name) is not None and getattr(options, name) < 1:
             raise DataError(f"--{name} is a whole number from 1 on")
-    folder = options.output
-    if is_folder(folder) and any(folder.iterdir()) and not exists(folder / REQUEST):
-        raise DataError(f"{folder}: holds something, and no fit; choose another folder")
+
+
+def require_usable(folder: Path, arguments: Sequence[str]) -> None:
+    """Refuses a folder of anything but this fit; runs alone may be there."""
+    if not is_folder(folder):
+        if os.path.lexists(folder):
+            raise DataError(f"{folder}: is there and no folder; choose another name")
+        return
+    if not exists(folder / REQUEST):
+        if any(entry.name != RUNS for entry in folder.iterdir()):
+            raise DataError(f"{folder}: holds something, and no fit; choose another folder")
+        return
+    begun, wanted = (vars(of) for of in (request_of(folder), parse(arguments)))
+    if other := [name for name in begun if name not in ANYHOW and str(begun[name]) != str(wanted[name])]:
+        names = " and ".join(map(in_command, other))
+        raise DataError(f"{folder}: holds a fit with another {names}; choose another folder")
+
+
+def request_of(folder: Path) -> argparse.Namespace:
+    """The fit of a folder as it was asked for."""
+    file = folder / REQUEST
+    if not exists(file):
+        raise DataError(f"{folder}: holds no fit")
+    found = read_json_table(file).get("arguments")
+    if not isinstance(found, list) or not all(isinstance(one, str) for one in found):
+        raise DataError(f"{file}: not the request of a fit, or of another version")
+    return parse(found)
 
 
 def restarted(given: argparse.Namespace) -> argparse.Namespace:
@@ -139,41 +189,51 @@ def restarted(given: argparse.Namespace) -> argparse.Namespace:
     changed = [name for name, value in vars(given).items() if name != "restart" and value != plain[name]]
     for name in changed:
         if name not in OF_RESTART:
-            what = name.upper() if name in ("case", "records") else command.option(name)
-            raise DataError(f"--restart DIR goes on with the fit in DIR: leave out {what}")
-    file = folder / REQUEST
-    if not exists(file):
-        raise DataError(f"{folder}: holds no fit")
-    found = read_json_table(file).get("arguments")
-    if not isinstance(found, list) or not all(isinstance(one, str) for one in found):
-        raise DataError(f"{file}: not the request of a fit, or of another version")
-    options = parse(found)
-    options.output = folder
+            raise DataError(f"--restart DIR goes on with the fit in DIR: leave out {in_command(name)}")
+    options = request_of(folder)
+    options.output, options.slurm = folder, None
     for name in changed:
         setattr(options, name, getattr(given, name))
     return options
 
 
-def write_request(options: argparse.Namespace, arguments: Sequence[str]) -> None:
+def whole(options: argparse.Namespace, arguments: Sequence[str]) -> list[str]:
     """The command line, with whole paths."""
-    files = {str(path): str(path.resolve()) for path in (options.case, *options.records)}
-    told = [files.get(argument, argument) for argument in arguments]
-    options.output.mkdir(parents=True, exist_ok=True)
-    write_whole(options.output / REQUEST, json.dumps({"arguments": told}, indent=2) + "\n")
+    files = {path: str(path.resolve()) for path in (options.case, *options.records)}
+    return [files.get(Path(argument), argument) for argument in arguments]
+
+
+def write_request(folder: Path, arguments: Sequence[str]) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise command.not_written(folder, error) from None
+    write_whole(folder / REQUEST, json.dumps({"arguments": arguments}, indent=2) + "\n")
+
+
+def discard_request(folder: Path) -> None:
+    """Of a fit that was refused before it ran anything."""
+    if not exists(folder / RUNS):
+        (folder / REQUEST).unlink(missing_ok=True)
+        with suppress(OSError):
+            folder.rmdir()  # only an empty one goes
 
 
 def first_and_most(options: argparse.Namespace, space: Space) -> tuple[int, int]:
     """Runs over the whole ranges, and runs at most."""
-    return options.first or FIRST_A_KEY * space.n, options.most or MOST_A_KEY * space.n
+    first, most = options.first or FIRST_A_KEY * space.n, options.most or MOST_A_KEY * space.n
+    last = runs_of_a_step(space.n)
+    if first + last > most:
+        raise DataError(f"--most is {most} runs: fewer than --first, {first}, and {last} of the last check")
+    if most > MOST_POINTS:
+        raise DataError(f"--most is {most} runs; {MOST_POINTS} at most")
+    return first, most
 
 
-def fitting_of(options: argparse.Namespace, space: Space, asked: Asked, how: How) -> Fitting:
+def fitting_of(options: argparse.Namespace, space: Space, asked: Asked, how: How, most: int) -> Fitting:
     settings = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
     if both := settings.keys() & space.keys:
         raise DataError(f"{min(both)} is both free and set")
-    first, most = first_and_most(options, space)
-    if first > most:
-        raise DataError(f"--first is {first} runs, more than --most, {most}")
     return Fitting(options.case, settings, space, asked, options.output, how, most)
 
 
@@ -182,28 +242,41 @@ def work(options: argparse.Namespace, arguments: Sequence[str], output: command.
     if is_restarted:
         options = restarted(options)
     require_sound(options)
+    folder = options.output
+    if not is_restarted:
+        arguments = whole(options, arguments)
+        require_usable(folder, arguments)
     space = space_of(once_each(options.free, "--free"))
     options.event = None
     read, lines = read_all(options)
     plain = vars(parse([str(options.case), *map(str, options.records)]))
-    require_of_use(options, plain | {"event": None}, {kind for kind, _ in read})
+    kinds = {kind for kind, _ in read}
+    require_of_use(options, plain | {"event": None}, kinds)
+    require_of_fit(options, kinds)
     asked = asked_of(options, read)
     lines += [f"{record.label}: {in_words(note)}" for _, record in asked.records for note in record.notes]
     workers = options.workers or default_workers()
     how = How(workers, options.scheduler, None, options.quiet, output.say, has_tables=False)
-    fitting = fitting_of(options, space, asked, how)
-    first, _ = first_and_most(options, space)
+    first, most = first_and_most(options, space)
+    fitting = fitting_of(options, space, asked, how, most)
     if not is_restarted:
-        write_request(options, arguments)
-    if options.slurm is not None:
-        points = space.points(space.sobol(first))
-        return array_script(fitting.sweep(points), options.output / RUNS, options.slurm)
-    for line in lines:
-        how.tell(line)
-    result = fitting.carry_out(first, BATCH_A_KEY * space.n, how.tell)
-    outcome = outcome_of(options, asked, fitting, result, finer_of(fitting, result))
-    write_results(options.output, outcome, result)
-    return [] if options.quiet else [*outcome.lines, f"results: {options.output}"]
+        write_request(folder, arguments)
+    try:
+        if options.slurm is not None:
+            points = space.points(space.sobol(first))
+            then = ["fit", "--restart", str(folder.resolve())]
+            return array_script(fitting.sweep(points), folder / RUNS, options.slurm, then)
+        for line in lines:
+            how.tell(line)
+        result = fitting.carry_out(first, BATCH_A_KEY * space.n, how.tell)
+        outcome = outcome_of(options, asked, fitting, result, finer_of(fitting, result))
+        write_results(folder, outcome, result)
+    except DataError:
+        discard_request(folder)
+        raise
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"interrupted; {NAME} --restart {folder} goes on") from None
+    return [] if options.quiet else [*outcome.lines, f"results: {folder}"]
 
 
 def main(arguments: list[str]) -> int:

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From the first runs to the posterior: Sobol's points over the ranges; then, round by round, an emulator
 of what the runs computed, samples of the posterior that it gives, and runs at some of them, until these agree
-with what was expected of them. At last least squares of runs alone, from the most probable place."""
+with what was expected of them. At last least squares of runs alone, from the most probable place.
+
+Each step follows from those before it alone: a fit that begins again comes to the same points, and takes the
+runs that are there."""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from slipfront.compare.command import in_words
 from slipfront.compare.kinds import Kind, Record
 from slipfront.compare.misfit import Observed
 from slipfront.errors import Error
@@ -23,7 +27,7 @@ from slipfront.fit.likelihood import Part, alike_of, part_of
 from slipfront.fit.posterior import sampled
 from slipfront.fit.space import Space, spread_out
 from slipfront.opened_sequence import opened
-from slipfront.program import find_program
+from slipfront.program import cost_of, find_program
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
 from slipfront.sweep.points import Point, text_of
@@ -35,11 +39,23 @@ MOST_TRAINING = 300
 MARGIN = 0.5  # of the emulator's box
 MOST_NOISE = 0.5  # of log L that the runs' own noise excuses: a poor emulator takes what it misses for noise
 AGREE = 0.4  # root mean square of what is expected of log L less what runs have
+AGREED = 1.0  # the same, beyond which a fit that has no runs left is in doubt
 STEPS, LAST_STEPS = 300, 1500
 BEYOND = 0.02  # share of samples at the end of the emulator's box that the posterior leaves
 HEAT = 4.0  # by which log L is divided for the wider posterior
 BETTER = 1.0  # of log L, by which least squares of runs may not surpass the place that was expected
+MOST_NAMED = 5  # places
 NEAR = 6.0  # below the best, within which these are compared
+
+
+def runs_of_a_round(batch: int) -> int:
+    """At most: at samples of the posterior, and of a wider one."""
+    return batch + batch // 2
+
+
+def runs_of_a_step(n: int) -> int:
+    """At most, of least squares of n keys: the place, two beside it for each key, the step."""
+    return 2 * n + 2
 
 
 @dataclass(frozen=True)
@@ -63,7 +79,6 @@ class Ran:
     share: np.ndarray
     observed: list[list[Observed]] = field(default_factory=list)  # [records][parts]
     why_not: str = ""
-    is_refused: bool = False  # by the program: there is no run
 
 
 @dataclass(frozen=True)
@@ -89,7 +104,12 @@ class Result:
     check: Check | None
     rounds: int
     at_ends: list[str]  # keys whose posterior goes on beyond the runs
-    notes: list[str]
+    left_out: list[str]  # runs and places of the record that do not count, in words
+
+    @property
+    def agrees(self) -> bool:
+        """Whether runs are as probable as was expected of them."""
+        return self.disagreement < AGREED
 
     @property
     def best(self) -> Ran:
@@ -97,7 +117,7 @@ class Result:
 
 
 class Fitting:
-    """A fit in its folder. Runs that are there are taken as they are."""
+    """A fit in its folder."""
 
     def __init__(
         self,
@@ -114,6 +134,9 @@ class Fitting:
         self.ran: list[Ran] = []
         self.parts: list[Part] = []
         self.rng = np.random.default_rng(0)
+        runs = folder / RUNS
+        known = places.read_definition(runs).points() if exists(runs / places.DEFINITION) else []
+        self.swept = {point.words: point for point in known}  # points of the folder's sweep
 
     # Runs.
 
@@ -122,35 +145,44 @@ class Fitting:
         return Sweep(self.case, vary, self.settings, combine="zip")
 
     def add(self, shares: np.ndarray) -> None:
-        self.add_points(self.space.points(shares), shares)
-
-    def add_points(self, wanted: list[Point], shares: np.ndarray) -> None:
         """Runs points that are new, if the program accepts them, and compares them with the records."""
         known = {ran.point.words for ran in self.ran}
-        every = {point.words: (point, share) for point, share in zip(wanted, shares, strict=True)}
+        wanted = zip(self.space.points(shares), shares, strict=True)
+        every = {point.words: (point, share) for point, share in wanted}
         fresh = {words: of for words, of in every.items() if words not in known}
         if not fresh:
             return
         points = [point for point, _ in fresh.values()]
-        all_runs = [ran.point for ran in self.ran if not ran.is_refused]
         to_check = [p for p in points if not places.is_done(self.folder / RUNS, p)]
         with closing(refused(self.sweep(points), find_program(), to_check, True)) as found:
             why_not = {point.name: told for point, told in found}
         if len(why_not) == len(points) and not self.ran:
-            raise DataError(f"all points are refused; {points[0].words}: {why_not[points[0].name]}")
-        valid = [point for point in points if point.name not in why_not]
+            told = why_not[points[0].name].removeprefix("--set ")
+            raise DataError(f"--free: all points are refused; the first, {points[0].words}: {told}")
+        valid = {point.words: point for point in points if point.name not in why_not}
         if valid:
-            sweep = self.sweep([*all_runs, *valid])
+            if not self.ran:
+                self.require_kinds(next(iter(valid.values())))
+            self.swept |= valid
+            sweep = self.sweep(list(self.swept.values()))
             finished = carry_out(sweep, self.folder / RUNS, replace(self.how, is_checked=bool(self.ran)))
             if finished.is_interrupted:
-                raise KeyboardInterrupt("interrupted; the same command goes on")
+                raise KeyboardInterrupt
         for point, share in fresh.values():
             ran = Ran(point, share)
             if point.name in why_not:
-                ran.why_not, ran.is_refused = why_not[point.name], True
+                ran.why_not = why_not[point.name]
             else:
                 self.observe(ran, self.folder / RUNS)
             self.ran.append(ran)
+
+    def require_kinds(self, point: Point) -> None:
+        """Refuses records of a sequence beside a case of one event, and the other way round."""
+        cost = cost_of(find_program(), self.case, self.sweep([point]).settings() + point.settings())
+        for kind, record in self.asked.records:
+            if kind.of_sequence is not None and kind.of_sequence != cost.is_sequence:
+                has, wants = ("a sequence of events", "one event")[:: 1 if cost.is_sequence else -1]
+                raise DataError(f"{record.label}: is compared with {wants}, and {self.case} has {has}")
 
     def observe(self, ran: Ran, folder: Path) -> None:
         """folder: of the sweep that has the run."""
@@ -166,28 +198,25 @@ class Fitting:
                 for kind, record in self.asked.records
             ]
         except Error as error:
-            ran.why_not = str(error)
-
-    def resume(self) -> None:
-        """Takes the runs of an earlier call in this folder."""
-        folder, keys = self.folder / RUNS, self.space.keys
-        if not exists(folder / places.DEFINITION):
-            return
-        points = places.read_definition(folder).points()
-        if points and list(points[0].values) == keys:
-            values = np.array([[float(p.values[key]) for key in keys] for p in points])  # type: ignore[arg-type]
-            self.add_points(points, self.space.shares(values))
+            ran.why_not = in_words(str(error))
 
     # Likelihood.
 
     def n_mismatched(self, ran: Ran) -> int:
+        return len(self.mismatched(ran))
+
+    def mismatched(self, ran: Ran) -> list[str]:
         """Places at which one of a fitted record and the run has a front and the other has none."""
-        return sum(
-            int((np.isfinite(of.measured) != np.isfinite(of.computed)).sum())
+        return [
+            label
             for parts, is_fitted in zip(ran.observed, self.asked.is_fitted, strict=True)
             for of in parts
             if is_fitted
-        )
+            for label, differs in zip(
+                of.labels, np.isfinite(of.measured) != np.isfinite(of.computed), strict=True
+            )
+            if differs
+        ]
 
     @property
     def usable(self) -> list[Ran]:
@@ -261,8 +290,11 @@ class Fitting:
         start = start[np.isfinite(emulator.log_likelihood(start))]
         return sampled(lambda s: emulator.log_likelihood(s) / heat, start, steps, self.rng)
 
+    def has_room(self, *runs: int) -> bool:
+        """For so many more."""
+        return len(self.ran) + sum(runs) <= self.most_runs
+
     def carry_out(self, first: int, batch: int, tell: Callable[[str], None]) -> Result:
-        self.resume()
         self.add(self.space.sobol(first))
         least = self.space.n + 2
         if len(self.usable) < least:
@@ -270,9 +302,10 @@ class Fitting:
             told = f": {reasons[0]}" if reasons else ""
             raise DataError(
                 f"only {len(self.usable)} of {len(self.ran)} runs can be compared with the records, {least} "
-                f"are needed{told}; choose narrower ranges or more first runs"
+                f"are needed{told}; choose other ranges or more first runs"
             )
         rounds, disagreement, noise = 0, np.inf, 0.0
+        round_, step = runs_of_a_round(batch), runs_of_a_step(self.space.n)
         while True:
             emulator, shares, logs = self.emulator()
             off = ""
@@ -281,23 +314,22 @@ class Fitting:
                     f"; log L of the last ones was expected to {disagreement:.2g}, their noise is {noise:.2g}"
                 )
             tell(f"round {rounds}: {len(self.ran)} runs, {len(shares)} of them like the record{off}")
-            is_spent = len(self.ran) + batch > self.most_runs
             excused = min(noise, MOST_NOISE)
-            if disagreement < float(np.hypot(AGREE, excused)) or is_spent:
+            if disagreement < float(np.hypot(AGREE, excused)) or not self.has_room(round_, step):
                 samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
                 check = self.least_squares(emulator, samples, tell)
                 is_best = check is None or check.gain < np.hypot(BETTER, 2 * excused)
-                if is_spent and not is_best:
+                is_spent = not self.has_room(round_, step)
+                if not is_best:
                     emulator, shares, logs = self.emulator()
+                if is_spent and not is_best:
                     samples, n_independent = self.sample(emulator, shares, logs, LAST_STEPS)
                 ends = self.at_ends(emulator, samples)
                 if is_spent or (is_best and not ends):
                     return self.result(samples, n_independent, disagreement, noise, check, rounds, ends)
-                if not is_best:
-                    emulator, shares, logs = self.emulator()
             rounds += 1
             disagreement, noise = self.round(emulator, shares, logs, batch)
-            if disagreement == np.inf and len(self.ran) + batch <= self.most_runs:
+            if disagreement == np.inf and self.has_room(step, step):
                 self.step_from_best(tell)
 
     def round(
@@ -314,7 +346,7 @@ class Fitting:
         chosen = np.concatenate([likely, spread_out(some, others, batch - 1)])
         hot, _ = self.sample(emulator, shares, logs, STEPS // 2, heat=HEAT)
         wider = hot[self.rng.integers(len(hot), size=400)]
-        beyond = spread_out(wider, np.concatenate([others, chosen]), batch // 2)
+        beyond = spread_out(wider, np.concatenate([others, chosen]), runs_of_a_round(batch) - batch)
         expected = emulator.log_likelihood(chosen)
         self.add(np.concatenate([chosen, beyond]))
         usable = {ran.point.words: k for k, ran in enumerate(self.usable)}
@@ -353,19 +385,21 @@ class Fitting:
         return self.step(start, np.maximum(samples.std(axis=0), 1e-4), tell)
 
     def step(self, start: np.ndarray, deviation: np.ndarray, tell: Callable[[str], None]) -> Check | None:
-        """Gauss's and Newton's step by central differences of runs, deviations apart."""
-        steps = np.diag(np.minimum(deviation, 0.5 * np.maximum(np.minimum(start, 1 - start), 1e-3)))
-        tried = np.concatenate([start[None], start + steps, start - steps])
+        """Gauss's and Newton's step by central differences of runs, deviations apart, within the ranges."""
+        after, before = np.minimum(deviation, 1 - start), np.minimum(deviation, start)
+        tried = np.concatenate([start[None], start + np.diag(after), start - np.diag(before)])
         tell(f"least squares: {len(tried) + 1} runs")
         logs, left = self.logs_and_residuals(tried)
         n, known = self.space.n, np.isfinite(logs)
         if not known[0] or not (known[1 : n + 1] | known[n + 1 :]).all():
             return None
-        after, before = (np.where(known[k : k + n], np.arange(k, k + n), 0) for k in (1, n + 1))
+        of_after, of_before = (np.where(known[k : k + n], np.arange(k, k + n), 0) for k in (1, n + 1))
         apart = np.array(
-            [tried[i, k] - tried[j, k] for k, (i, j) in enumerate(zip(after, before, strict=True))]
+            [tried[i, k] - tried[j, k] for k, (i, j) in enumerate(zip(of_after, of_before, strict=True))]
         )
-        slopes = (left[after] - left[before]) / apart[:, None]
+        if not apart.all():  # at an end of a range, and the run beside it has no comparison
+            return None
+        slopes = (left[of_after] - left[of_before]) / apart[:, None]
         normal = slopes @ slopes.T + np.diag(1e-9 / deviation**2)
         at = np.clip(start - np.linalg.solve(normal, slopes @ left[0]), 0, 1)
         of_step, _ = self.logs_and_residuals(at[None])
@@ -422,10 +456,10 @@ class Fitting:
             check,
             rounds,
             at_ends,
-            self.notes(),
+            self.left_out(),
         )
 
-    def notes(self) -> list[str]:
+    def left_out(self) -> list[str]:
         """Runs that failed or have no front where the record has one, and places that no run explains."""
         told = []
         failed = [ran for ran in self.ran if ran.why_not]
@@ -439,10 +473,11 @@ class Fitting:
                 f"{unlike} runs have fronts at other places of the record than the rest: "
                 "their points are ruled out"
             )
-        if usable and (n := self.n_mismatched(usable[0])):
+        if usable and (places := self.mismatched(usable[0])):
+            named = ", ".join(places[:MOST_NAMED]) + (", ..." if len(places) > MOST_NAMED else "")
             told.append(
-                "places of the record that do not count, as none of the runs has a front there, or all have "
-                f"one where the record has none: {n}"
+                f"{len(places)} places of the record do not count, as no run has a front there, or all have "
+                f"one where the record has none: {named}"
             )
         return told
 

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.special import gammainc, gammaln, hyp1f1
 
 from slipfront.compare.misfit import Observed
+from slipfront.files import DataError
 from slipfront.tip_fit import correlated
 
 LEAST_SCALE = 1e-3  # of a part's own deviation: errors that are not known are no smaller
@@ -88,6 +89,10 @@ class Part:
 def part_of(observed: Observed, name: str, place: tuple[int, int], used: np.ndarray) -> Part:
     measured, error = observed.measured[used], observed.error[used]
     has_error = bool(np.isfinite(error).all())
+    if not has_error and np.isfinite(error).any():
+        label = next(of for of, is_used, e in zip(observed.labels, used, observed.error, strict=True)
+                     if is_used and not np.isfinite(e))  # fmt: skip
+        raise DataError(f"{name}: {label} has no error, and others have one: give all or none")
     deviation = float(measured.std()) or float(np.abs(measured).max(initial=0.0)) or 1.0
     return Part(
         name=name,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from slipfront.files import DataError, read_toml
+from slipfront.files import DataError, exists, read_toml
 from slipfront.fit.fitting import LAST_STEPS, RUNS, Fitting, Ran, Result
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep, flattened
@@ -34,15 +34,21 @@ def finer_of(fitting: Fitting, result: Result) -> Finer | str:
     half_m = 0.5 * float(case[KEY])
     if KEY in result.space.keys:
         return f"{KEY} is free"
+    if not result.agrees:
+        return "runs and what was expected of them do not agree"
     vary = {key: [value] for key, value in (best.point.values | {KEY: half_m}).items()}
     settings = {key: value for key, value in fitting.settings.items() if key != KEY}
-    sweep = Sweep(fitting.case, vary, settings, combine="zip")
-    (point,) = sweep.points()
+    (point,) = Sweep(fitting.case, vary, settings, combine="zip").points()
     folder = fitting.folder / FOLDER
+    # With another --most another run may be the best.
+    known = places.read_definition(folder).points() if exists(folder / places.DEFINITION) else []
+    points = {one.words: one for one in (*known, point)}.values()
+    every = {key: [one.values[key] for one in points] for key in vary}
+    sweep = Sweep(fitting.case, every, settings, combine="zip")
     fitting.how.tell(f"mesh: the best run with {KEY} = {half_m:g}")
     try:
         if carry_out(sweep, folder, replace(fitting.how, quiet=True, is_checked=False)).is_interrupted:
-            raise KeyboardInterrupt("interrupted; the same command goes on")
+            raise KeyboardInterrupt
     except DataError as error:
         return str(error)
     ran = Ran(point, best.share)

@@ -42,7 +42,6 @@ MARK = "<!DOCTYPE html><!-- slipfront fit -->"
 UNLIKELY = 1e-3  # probability of a chi2, below which the model does not explain a part
 ALIKE = 4.0  # times, by which what is left of a part counts as fewer, from which it is no noise
 MOST_SAMPLES = 4000  # of posterior.csv
-AGREED = 1.0  # of log L, to which runs and what was expected of them agree
 FEW = 200  # independent samples
 MOVED = 1.0  # of a key's standard deviation, by which a finer mesh may move it
 
@@ -136,8 +135,8 @@ def pictures_of(asked: Asked, run: Opened) -> list[ShownPart]:
 
 
 def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
-    told = list(result.notes)
-    if not result.disagreement < AGREED:
+    told = []
+    if not result.agrees:
         expected = (
             "no round has tested it"
             if np.isinf(result.disagreement)
@@ -153,7 +152,7 @@ def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
     ]
     for k, of in enumerate(keys):
         if end := at_an_end(result.space, result.samples, of, k):
-            told.append(f"{of.name} is most probable at the {end} end of its range: widen it")
+            told.append(f"the {end} end of its range cuts the posterior of {of.name}: widen the range")
     check = result.check
     if check is None:
         told.append("least squares of runs failed: a run beside the best one has no comparison")
@@ -170,15 +169,15 @@ def mesh_doubts(space: Space, samples: np.ndarray, finer: Finer | str) -> list[s
         return [f"what the mesh moves is not known: {finer}"]
     moved = (np.median(finer.samples, axis=0) - np.median(samples, axis=0)) / samples.std(axis=0)
     to = space.values(np.median(finer.samples, axis=0)[None])[0]
-    told = [
+    changes = [
         f"{key} to {number(value)}, by {abs(by):.2g} of its standard deviations"
         for key, value, by in zip(space.keys, to, moved, strict=True)
         if abs(by) > MOVED
     ]
-    if not told:
+    if not changes:
         return []
     size = f"{ELEMENT_SIZE} = {finer.element_size_m:g}"
-    return [f"{size} would move {'; '.join(told)}: fit again with it"]
+    return [f"{size} would move {'; '.join(changes)}: fit again with it"]
 
 
 def outcome_of(
@@ -192,14 +191,14 @@ def outcome_of(
     told = findings(space, samples, keys, combined)
     runs = fitting.computed([best])
     of_parts = {part.name: quality(part, rows[0]) for part, rows in zip(result.parts, runs, strict=True)}
-    told += misfits(result.parts, of_parts)
+    told += misfits(result.parts, of_parts) + result.left_out
     with matplotlib.rc_context(RC):
         try:
             pictures = guarded(place, lambda: pictures_of(asked, opened(place)))
         except Error as error:
             pictures = []
             told.append(f"the best run cannot be shown beside the records: {error}")
-    notes = doubts_of(result, keys) + mesh_doubts(space, samples, finer)
+    notes = mesh_doubts(space, samples, finer) + doubts_of(result, keys)
     of_finer = [] if isinstance(finer, str) else marginals(space, finer.samples)
     check = result.check
     values = {key: float(value) for key, value in best.point.values.items()}  # type: ignore[arg-type]

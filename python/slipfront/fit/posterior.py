@@ -15,6 +15,7 @@ WALKERS = 40  # at least, as many at a time cost little more than one
 BURN_IN = 0.3  # of the steps
 LEVELS = (0.90, 0.68)
 FLAT = 0.7  # of its range, beyond which an interval of 90 % (a uniform one has 0.9) does not determine a key
+CUT = 0.03  # share of samples in a tenth of the interval of 90 % at an end of the range; 0.09 if uniform
 ALIKE = 0.9  # correlation beyond which two keys trade off
 
 
@@ -87,11 +88,11 @@ def correlations(samples: np.ndarray) -> np.ndarray:
 
 
 def at_an_end(space: Space, samples: np.ndarray, of: Marginal, k: int) -> str:
-    """The end of its range at which a determined key's posterior is highest, or ''."""
+    """The end of its range that cuts a determined key's posterior, or ''."""
     if not of.is_determined:
         return ""
     wide = np.quantile(samples[:, k], 0.95) - np.quantile(samples[:, k], 0.05)
     for end, name in ((samples[:, k] < 0.1 * wide, "lower"), (samples[:, k] > 1 - 0.1 * wide, "upper")):
-        if end.mean() > 0.1:
+        if end.mean() > CUT:
             return name
     return ""

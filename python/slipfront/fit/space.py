@@ -61,8 +61,10 @@ class Space:
 
 
 def space_of(free: Mapping[str, str]) -> Space:
-    """Of texts FROM:TO or FROM:TO:log by key."""
-    return Space({key: range_of(key, text) for key, text in free.items()})
+    """Of texts FROM:TO or FROM:TO:log by key, from the lower end to the upper one."""
+    ranges = (range_of(key, text) for key, text in free.items())
+    rising = (Range(min(of.from_, of.to), max(of.from_, of.to), of.is_log) for of in ranges)
+    return Space(dict(zip(free, rising, strict=True)))
 
 
 def spread_out(candidates: np.ndarray, others: np.ndarray, count: int) -> np.ndarray:

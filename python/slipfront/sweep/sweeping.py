@@ -9,7 +9,7 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
@@ -18,6 +18,7 @@ from typing import Any
 
 from tqdm.auto import tqdm
 
+from slipfront import command
 from slipfront.files import DataError
 from slipfront.program import GIGA, VARIABLE, Cost, answer, cost_of, with_settings
 from slipfront.sweep import folder as places
@@ -158,14 +159,15 @@ MOST_JOBS = 100
 SPARE = 3  # times the expected time, since machines differ
 LEAST_MINUTES = 10
 MEGA = 1e6
+WHAT = "a script of slipfront for Slurm"
 WORKER_BYTES = 0.15 * GIGA  # of the sweep itself in a job
 
+SLURM_MARK = "#!/bin/bash\n# An array of Slurm jobs by slipfront\n"  # of a script that may be replaced
 SLURM_SCRIPT = """\
-#!/bin/bash
 # {title}: {n_points} points in {n_jobs} shares. Submit with
 #   sbatch {script}
-# and when the array has ended, make the tables (it runs points that a job did not come to):
-#   {collect}
+# and when the array has ended go on (with points that a job did not come to, too):
+#   {then}
 #SBATCH --job-name=slipfront-sweep
 #SBATCH --array=1-{n_jobs}
 #SBATCH --ntasks=1
@@ -289,31 +291,35 @@ def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
         return Finished(folder, ended, table, is_interrupted)
 
 
-def array_script(sweep: Sweep, folder: Path, script: Path) -> list[str]:
-    """Checks all points, writes the folder's definition and the script; returns what to print."""
+def array_script(sweep: Sweep, folder: Path, script: Path, then: Sequence[str] = ()) -> list[str]:
+    """Checks all points, writes the folder's definition and the script; returns what to print.
+
+    then: what is called when the array has ended, by default the sweep for its tables."""
+    command.require_own(script, SLURM_MARK.encode(), WHAT)
     program, identity = places.begun(sweep, folder)
     points = sweep.points()
     require_valid(sweep, program, points, quiet=False)
     n_jobs = min(MOST_JOBS, len(points))
     needs = needs_of(sweep, program, points, n_jobs)
     require_disk(needs, folder)
-    python = [sys.executable, "-m", "slipfront", "sweep", "--restart", str(folder.resolve())]
+    python = [sys.executable, "-m", "slipfront"]
+    again = ["sweep", "--restart", str(folder.resolve())]
     package = shlex.quote(str(Path(__file__).resolve().parents[2]))
     text = SLURM_SCRIPT.format(
         title=sweep.case.name,
         n_points=len(points),
         n_jobs=n_jobs,
         script=script,
-        collect=f"PYTHONPATH={package} {shlex.join(python)}",
+        then=f"PYTHONPATH={package} {shlex.join([*python, *(then or again)])}",
         memory_mb=int((needs.memory_bytes / n_jobs + WORKER_BYTES) / MEGA) + 1,
         minutes=max(LEAST_MINUTES, int(SPARE * needs.time_s / n_jobs / 60) + 1),
         log=shlex.quote(str(folder.resolve() / "slurm-%a.log")),
         variable=VARIABLE,
         program=shlex.quote(str(program)),
         package=package,
-        share=f'{shlex.join(python)} --quiet --share "$SLURM_ARRAY_TASK_ID/{n_jobs}"',
+        share=f'{shlex.join([*python, *again])} --quiet --share "$SLURM_ARRAY_TASK_ID/{n_jobs}"',
     )
     with places.held(folder):
         places.write_definition(folder, sweep, identity)
-    places.write_whole(script, text)
+    command.write_own(script, SLURM_MARK, text, WHAT)
     return [f"script: {script}, {n_jobs} jobs; submit it with sbatch"]
