@@ -221,9 +221,11 @@ def record_of(
     of = {quantity: values[order] for quantity, values in read.items()}
     of["onset_s"], told = without_marks(of["onset_s"], never_slipped, unit)
     if "error_s" in of:
-        of["error_s"] = known_errors(where, of["error_s"])
+        of["error_s"], without = known_errors(where, of)
         if np.isnan(of["error_s"]).all():
             del of["error_s"]
+        elif without:
+            told.append(f"{n_places(without)} without an error of its time: the median of the others counts")
     if n_doubts := int((doubts[order] != "").sum()):
         told.append(f"{n_places(n_doubts)} with a doubt on the onset")
     return of, [*told, *notes]
@@ -283,11 +285,16 @@ def read_each(
     return made
 
 
-def known_errors(file: Any, error: np.ndarray) -> np.ndarray:
-    """What is missing is the median of the others."""
-    known = error[np.isfinite(error)]
-    require(bool((known > 0).all()), file, "holds an error of a time that is not above 0")
-    return np.where(np.isfinite(error), error, np.median(known)) if known.size else error
+def known_errors(file: Any, of: dict[str, np.ndarray]) -> tuple[np.ndarray, int]:
+    """What is missing is the median of the others; and of how many times."""
+    error, is_known = of["error_s"], np.isfinite(of["error_s"])
+    if (wrong := error <= 0).any():
+        x = of["x_m"][wrong][0]
+        raise DataError(f"{file}: holds an error of a time that is not above 0, at x = {x:.6g}")
+    if not is_known.any():
+        return error, 0
+    missing = int((~is_known & np.isfinite(of["onset_s"])).sum())
+    return np.where(is_known, error, np.median(error[is_known])), missing
 
 
 def read_onsets(

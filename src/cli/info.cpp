@@ -114,7 +114,7 @@ void add_costs(const advice::Info& info, Listing& list) {
 }
 
 /// The forces and the displacements that give them.
-void add_loads(const setup::ResolvedLoads& loads, bool is_pushed, bool heals, Listing& list) {
+void add_loads(const setup::ResolvedLoads& loads, const problem::Problem& problem, Listing& list) {
   list.add("normal force", fmt::format("{:.6g} N/m, a mean pressure of {:.6g} Pa", loads.normal_force_N_per_m,
                                        loads.mean_pressure_Pa));
   list.add("  upper edge pressed down", fmt::format("{:.6g} m at its left end, {:.6g} m at its right one",
@@ -123,9 +123,14 @@ void add_loads(const setup::ResolvedLoads& loads, bool is_pushed, bool heals, Li
            fmt::format("{:.6g} N/m, {:.6g} of the critical one, {:.6g} N/m", loads.shear_force_N_per_m,
                        loads.shear_force_N_per_m / loads.critical_shear_force_N_per_m,
                        loads.critical_shear_force_N_per_m));
-  list.add(is_pushed ? "  left side then pushed to +x" : "  upper edge then moved to +x",
+  list.add(problem.above().machine.pusher.is_there() ? "  left side then pushed to +x"
+                                                     : "  upper edge then moved to +x",
            fmt::format("{:.6g} m, critical {:.6g} m", loads.shear_m, loads.critical_shear_m));
-  if (heals) list.add("  healing", "raises the critical ones until the first event: run tells by how much");
+  if (problem.friction.law.never_sticks())
+    list.add("  friction with state",
+             "critical: t/p is that of steady sliding at V_i; events may begin elsewhere");
+  if (problem.heals())
+    list.add("  healing", "raises the critical ones until the first event: run tells by how much");
 }
 
 std::string text_of(double number) {
@@ -280,7 +285,7 @@ void print_info(const CaseArguments& arguments, const std::optional<int>& n_proc
   add_steps(problem, info, list);
   add_costs(info, list);
   if (info.shared) add_shared(*info.shared, list);
-  if (info.loads) add_loads(*info.loads, problem.above().machine.pusher.is_there(), problem.heals(), list);
+  if (info.loads) add_loads(*info.loads, problem, list);
   if (const double speed_m_per_s = shear_speed_in_event_m_per_s(problem); speed_m_per_s > 0)
     list.add("upper edge during the event",
              fmt::format("moves to +x at {} (loading.shear_speed_m_per_s), {} by time.end_s",

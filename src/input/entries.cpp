@@ -479,10 +479,12 @@ void add_loading(Entries& all) {
   loading.add(
       "pressures_x_m", [](auto& l) -> auto& { return l.top_pressure.x_m; }, at_least(0),
       "places along the top edge, ascending, of pressures_Pa");
-  loading.add(
+  auto& pressures = loading.add(
       "pressures_Pa", [](auto& l) -> auto& { return l.top_pressure.p_Pa; }, at_least(0),
       "pressure on the top edge there, which stays, instead of the two displacements, linear between, "
       "constant beyond the first and the last");
+  pressures.is_set = [](const Case& c) { return c.loading.top_pressure.is_there(); };
+  pressures.is_never_left_out = true;
   loading.only_with = pressed_by_force();
   loading.add("tilt_difference_m", &Loading::tilt_difference_m, any(),
               "downward displacement of the top edge at its left end less that at its right end");

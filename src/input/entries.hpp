@@ -74,6 +74,8 @@ struct Entry {
   /// Whether a case has a key without a default, which decides by being set. `get` gives an example
   /// else.
   std::function<bool(const Case&)> is_set = {};
+  /// Whether an override that excludes it is refused: a default would take the place of what the file says.
+  bool is_never_left_out = false;
 };
 
 /// Whether a key does something in a case.

@@ -170,8 +170,7 @@ void check_top_pressure(const statics::TopPressure& pressure, double width_m) {
   check_along(places, x_m, "m", pressures, p_Pa, "pressure per place");
   if (p_Pa.empty()) return;
   if (x_m.back() > width_m)
-    throw UserError("{} reaches {:.12g} m, beyond {} = {:.12g} m", places, x_m.back(), Key("plate.width_m"),
-                    width_m);
+    throw UserError("{} reaches {} m, beyond {} = {} m", places, x_m.back(), Key("plate.width_m"), width_m);
   if (pressure.force_N_per_m(width_m) <= 0)
     throw UserError("{} press nothing down; give at least one above 0", pressures);
 }

@@ -194,7 +194,8 @@ std::string drop_keys_that_overrides_exclude(const Case& config, Document& docum
     });
   };
   for (const Entry& entry : common_entries())
-    if (!applies(entry, config) && overridden(entry)) dropped.push_back(entry.key);
+    if (!entry.is_never_left_out && !applies(entry, config) && overridden(entry))
+      dropped.push_back(entry.key);
   return drop([&](const Setting& setting) { return contains_word(dropped, setting.key); },
               fmt::format("{}", fmt::join(why, ", ")), document);
 }

@@ -322,3 +322,15 @@ def test_speeds_far_below_those_of_waves_are_told(tmp_path, capsys):
     assert note == "a speed is below 0.001 c_L: check the units of x and time, unless slip creeps"
     front, _ = lines_of(tmp_path, capsys, range(0, 100, 10), "--c-l-m-per-s", "5000")
     assert "(0.40 c_L)" in front
+
+
+def test_errors_that_are_missing_or_wrong_are_told(tmp_path):
+    file = tmp_path / "onsets.csv"
+    file.write_text("x_mm,time_us,error_us\n-20,0,2\n-10,12,\n0,25,1\n10,,\n20,50,3\n")
+    record = slipfront.read_onsets(file)
+    assert record.error_s.values.tolist() == pytest.approx([2e-6, 2e-6, 1e-6, 2e-6, 3e-6])
+    told = "1 place without an error of its time: the median of the others counts"
+    assert told in record.attrs["notes"]
+    file.write_text("x_mm,time_us,error_us\n-20,0,2\n-10,12,0\n")
+    with pytest.raises(slipfront.Error, match="an error of a time that is not above 0, at x = -10"):
+        slipfront.read_onsets(file)

@@ -170,6 +170,7 @@ def test_a_file_of_events(tmp_path, capsys):
     assert list(every.event) == [2, 2, 2, 7, 7, 7, 9]
     assert every.notes == [
         "event 2: 1 more at a place that has one: that with the least error counts",
+        "event 7: 1 place without an error of its time: the median of the others counts",
         "event 7: 1 place with a doubt on the onset",
     ]
     one = slipfront.read_onsets(file, event=7)

@@ -191,7 +191,7 @@ def observed_cycles(
     skip_events: int = SKIPPED,
     skip_of_record: int | None = None,
 ) -> Observed:
-    """Means over events, each over that of the record, whose standard errors are of its scatter."""
+    """Means over events, in percent of those of the record, whose standard errors are of its scatter."""
     found = compare_cycles(
         sequence,
         record,
@@ -199,12 +199,12 @@ def observed_cycles(
         skip_events=skip_events,
         skip_of_record=skip_of_record,
     )
-    scale = found["mean_record"].to_numpy()
+    scale = 0.01 * found["mean_record"].to_numpy()
     return Observed(
         "events",
-        "1",
+        "percent",
         [NAMES[str(name)] for name in found["quantity"].values],
-        np.ones(len(scale)),
+        np.full(len(scale), 100.0),
         found["mean_error_record"].to_numpy() / scale,
         found["mean_sequence"].to_numpy() / scale,
         is_series=False,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import corner
 import numpy as np
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 BEST = "#d55e00"
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")
 INSIDE = (0.68, 0.90)  # of the samples, within the contours
+SHOWN = (0.001, 0.999)  # quantiles, between which axes go
+LEGEND = "dashes: median and 90 %\ncontours: 68 and 90 %\norange: best run"
 
 
 def draw_corner(space: Space, samples: np.ndarray, best: Mapping[str, float]) -> Drawing:
@@ -44,6 +46,9 @@ def draw_corner(space: Space, samples: np.ndarray, best: Mapping[str, float]) ->
         ax.axvline(at[0] * factors[0], color=BEST)
         ax.set(xlabel=labels[0], xscale=scales[0], yticks=[])
         return Drawing("corner", figure, "")
+    # The best run may be beyond nearly all samples.
+    low, high = np.quantile(values * factors, SHOWN, axis=0)
+    low, high = np.minimum(low, at * factors), np.maximum(high, at * factors)
     corner.corner(
         values * factors,
         fig=figure,
@@ -56,11 +61,20 @@ def draw_corner(space: Space, samples: np.ndarray, best: Mapping[str, float]) ->
         plot_datapoints=False,
         smooth=0.7,
         label_kwargs={"fontsize": 8},
+        range=list(zip(low, high, strict=True)),
         max_n_ticks=4,
     )
-    for ax in figure.axes:
-        for axis in (ax.xaxis, ax.yaxis):
+    figure.subplots_adjust(left=0.16, bottom=0.16)
+    for k, ax in enumerate(figure.axes):
+        row, column = divmod(k, space.n)
+        for axis, (first, last), is_outer in (
+            (ax.xaxis, ax.get_xlim(), row == space.n - 1),
+            (ax.yaxis, ax.get_ylim(), column == 0 and row > 0),
+        ):
             if axis.get_scale() == "log":
-                axis.set_major_formatter(PLAIN)
-                axis.set_minor_formatter(PLAIN)
+                is_narrow = last < 10 * first  # than powers of ten are apart
+                axis.set_major_locator(MaxNLocator(4) if is_narrow else LogLocator(subs=(1, 2, 5)))
+                axis.set_minor_locator(NullLocator())
+                axis.set_major_formatter(PLAIN if is_outer else NullFormatter())
+    figure.text(0.98, 0.97, LEGEND, ha="right", va="top", fontsize=8)
     return Drawing("corner", figure, "")

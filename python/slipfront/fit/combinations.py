@@ -40,7 +40,7 @@ COMBINATIONS = (
                 lambda s, k, p, d: (s - k) * p * d),
     Combination("weakening (mu_s - mu_k) p/d_c", "Pa/m", (MU_S, MU_K, P, D_C), LINEAR + EXPONENTIAL,
                 lambda s, k, p, d: (s - k) * p / d),
-    Combination("length of a crack G (mu_s - mu_k) p d_c/2/(t - mu_k p)^2", "m",
+    Combination("critical crack length G (mu_s - mu_k) p d_c/2/(t - mu_k p)^2, G shear modulus", "m",
                 (MU_S, MU_K, P, D_C, T, E, NU), LINEAR,
                 lambda s, k, p, d, t, e, nu: e / (4 + 4 * nu) * (s - k) * p * d / (t - k * p) ** 2),
     Combination("stress drop t - mu_k p", "Pa", (T, MU_K, P), (), lambda t, k, p: t - k * p),

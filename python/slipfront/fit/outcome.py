@@ -101,7 +101,7 @@ def quality_line(name: str, of: dict[str, Any]) -> str:
 
 
 def in_unit(value: float, unit: str) -> str:
-    return number(value) if unit == "1" else f"{number(value)} {unit}"
+    return number(value) if unit == "1" else f"{number(value)} {'%' if unit == 'percent' else unit}"
 
 
 def misfits(parts: list[Part], of: dict[str, dict[str, Any]]) -> list[str]:

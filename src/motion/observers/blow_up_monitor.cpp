@@ -50,7 +50,8 @@ const char* strongest_load(const record::Energies& now, const record::Energies& 
        "unloading_Pa of a patch"},
       {std::abs(now.prestress_work), "prestress.t_Pa, or the tractions in prestress.file"},
       {std::abs(now.far_edge_work), "loading.shear_speed_m_per_s"},
-      {start.stored(), "loading.tilt_left_m and loading.tilt_right_m, or the force given instead"},
+      {start.stored(),
+       "loading.tilt_left_m and loading.tilt_right_m, or the force or pressures given instead"},
   }};
   return std::ranges::max_element(loads, {}, &Load::energy_J_per_m)->keys;
 }
