@@ -43,6 +43,9 @@ AGREED = 1.0  # the same, beyond which a fit that has no runs left is in doubt
 STEPS, LAST_STEPS = 300, 1500
 BEYOND = 0.02  # share of samples at the end of the emulator's box that the posterior leaves
 HEAT = 4.0  # by which log L is divided for the wider posterior
+FALL = 5.0  # of log L, over differences of runs for least squares: beyond their noise, and nearly linear
+WIDTHS = (1e-4, 0.05)  # of these, shares of the ranges
+MOST_STEPS = 6  # of least squares in a round
 BETTER = 1.0  # of log L, by which least squares of runs may not surpass the place that was expected
 MOST_NAMED = 5  # places
 NEAR = 6.0  # below the best, within which these are compared
@@ -88,7 +91,8 @@ class Check:
     share: np.ndarray  # of the best of its runs
     gain: float  # of log L over where it began
     deviations: np.ndarray  # of the keys' shares, by the runs' derivatives
-    moved: np.ndarray  # over the posterior's standard deviations
+    moved: np.ndarray  # the share less where it began
+    falls: np.ndarray  # of log L from there to the runs beside it, of each key
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,7 @@ class Fitting:
         self.ran: list[Ran] = []
         self.parts: list[Part] = []
         self.rng = np.random.default_rng(0)
+        self.widths = self.summit = np.zeros(0)  # of differences in `climb`, and where it has ended
         runs = folder / RUNS
         known = places.read_definition(runs).points() if exists(runs / places.DEFINITION) else []
         self.swept = {point.words: point for point in known}  # points of the folder's sweep
@@ -329,8 +334,8 @@ class Fitting:
                     return self.result(samples, n_independent, disagreement, noise, check, rounds, ends)
             rounds += 1
             disagreement, noise = self.round(emulator, shares, logs, batch)
-            if disagreement == np.inf and self.has_room(step, step):
-                self.step_from_best(tell)
+            if disagreement > AGREED:
+                self.climb(tell)
 
     def round(
         self, emulator: Emulator, shares: np.ndarray, logs: np.ndarray, batch: int
@@ -367,14 +372,28 @@ class Fitting:
         shares = zip(self.space.keys, np.maximum(below, above), strict=True)
         return [key for key, share in shares if share > BEYOND]
 
-    def step_from_best(self, tell: Callable[[str], None]) -> None:
-        """Least squares from the best run, where the emulator does not lead there: with steps as wide as the
-        best runs are apart."""
-        self.find_parts()
-        usable = self.usable
-        order = np.argsort(-self.of_runs(self.computed(usable)))[: self.space.n + 2]
-        near = np.array([usable[k].share for k in order])
-        self.step(near[0], np.clip(near.std(axis=0), 1e-3, 0.05), tell)
+    def climb(self, tell: Callable[[str], None]) -> None:
+        """Least squares from the best run on, where the emulator does not lead: step by step as long as they
+        gain, by differences over which log L falls by about FALL. At first these are as wide as the best runs
+        are apart."""
+        step = runs_of_a_step(self.space.n)
+        for _ in range(MOST_STEPS):
+            self.find_parts()
+            logs = self.of_runs(self.computed(self.usable))
+            shares = np.array([ran.share for ran in self.usable])
+            near = shares[np.argsort(-logs)[: self.space.n + 2]]
+            at_summit = logs[[np.array_equal(share, self.summit) for share in shares]]
+            if not self.has_room(step, step) or logs.max() < at_summit.max(initial=-np.inf) + BETTER:
+                return
+            if not self.widths.size:
+                self.widths = np.clip(near.std(axis=0), *WIDTHS)
+            check = self.step(near[0], self.widths, tell)
+            if check is None:
+                return
+            falls = np.clip(check.falls, FALL / 10, FALL * 100)
+            self.widths = np.clip(self.widths * np.sqrt(FALL / falls), *WIDTHS)
+            if check.gain < BETTER and (check.falls < 4 * FALL).all():
+                self.summit = check.share
 
     def least_squares(
         self, emulator: Emulator, samples: np.ndarray, tell: Callable[[str], None]
@@ -382,11 +401,13 @@ class Fitting:
         """From the most probable place."""
         some = samples[self.rng.integers(len(samples), size=500)]
         start = some[int(np.argmax(emulator.log_likelihood(some)))]
-        return self.step(start, np.maximum(samples.std(axis=0), 1e-4), tell)
+        # Deviations of each key while the others stay: ranges of keys that trade off are far wider.
+        of_each = 1 / np.sqrt(np.diag(np.linalg.pinv(np.atleast_2d(np.cov(samples, rowvar=False)))))
+        return self.step(start, np.clip(np.sqrt(2 * FALL) * of_each, *WIDTHS), tell)
 
-    def step(self, start: np.ndarray, deviation: np.ndarray, tell: Callable[[str], None]) -> Check | None:
-        """Gauss's and Newton's step by central differences of runs, deviations apart, within the ranges."""
-        after, before = np.minimum(deviation, 1 - start), np.minimum(deviation, start)
+    def step(self, start: np.ndarray, widths: np.ndarray, tell: Callable[[str], None]) -> Check | None:
+        """Gauss's and Newton's step by central differences of runs within the ranges."""
+        after, before = np.minimum(widths, 1 - start), np.minimum(widths, start)
         tried = np.concatenate([start[None], start + np.diag(after), start - np.diag(before)])
         tell(f"least squares: {len(tried) + 1} runs")
         logs, left = self.logs_and_residuals(tried)
@@ -400,14 +421,14 @@ class Fitting:
         if not apart.all():  # at an end of a range, and the run beside it has no comparison
             return None
         slopes = (left[of_after] - left[of_before]) / apart[:, None]
-        normal = slopes @ slopes.T + np.diag(1e-9 / deviation**2)
+        normal = slopes @ slopes.T + np.diag(1e-9 / widths**2)
         at = np.clip(start - np.linalg.solve(normal, slopes @ left[0]), 0, 1)
         of_step, _ = self.logs_and_residuals(at[None])
         places, values = np.concatenate([tried, at[None]]), np.concatenate([logs, of_step])
         best = int(np.argmax(values))
         deviations = np.sqrt(np.diag(np.linalg.inv(normal)))
-        return Check(places[best], float(values[best] - logs[0]), deviations,
-                     (places[best] - start) / deviation)  # fmt: skip
+        falls = logs[0] - np.minimum(logs[of_after], logs[of_before])
+        return Check(places[best], float(values[best] - logs[0]), deviations, places[best] - start, falls)
 
     def logs_and_residuals(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """log L, -inf of runs without a comparison, and residuals over the first run's most probable errors.

@@ -228,7 +228,8 @@ def outcome_of(
         "least_squares": None if check is None else {
             "values": dict(zip(space.keys, map(float, space.values(check.share)), strict=True)),
             "gain_of_log_likelihood": check.gain,
-            "moved_over_deviations": dict(zip(space.keys, map(float, check.moved), strict=True)),
+            "moved_over_deviations": dict(zip(
+                space.keys, map(float, check.moved / samples.std(axis=0)), strict=True)),
             "deviations_over_posterior": dict(zip(
                 space.keys, map(float, check.deviations / samples.std(axis=0)), strict=True)),
         },
