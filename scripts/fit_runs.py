@@ -29,9 +29,8 @@ WORKERS = 2  # runs, or fits, at a time
 def first_runs(case: Path, free: Mapping[str, str], runs: Path) -> None:
     """Those over the whole ranges, which several fits share."""
     space = space_of(free)
-    points = space.points(space.sobol(FIRST_A_KEY * space.n))
-    vary = {key: [point.values[key] for point in points] for key in space.keys}
-    carry_out(Sweep(case, vary, {}, combine="zip"), runs, How(WORKERS, quiet=True, has_tables=False))
+    sweep = Sweep.of_points(case, space.points(space.sobol(FIRST_A_KEY * space.n)), {})
+    carry_out(sweep, runs, How(WORKERS, quiet=True, has_tables=False))
 
 
 def begin(folder: Path, runs: Path) -> None:

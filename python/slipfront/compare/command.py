@@ -143,9 +143,10 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 
 def require_of_use(options: argparse.Namespace, plain: dict[str, Any], kinds: set[Kind]) -> None:
-    """Refuses options that count with no record that is given. plain: values of options left out."""
+    """Refuses options that count with no record that is given. plain: values of the command's options where
+    they are left out."""
     of_use = {name for kind in kinds for name in kind.options}
-    for name in sorted({name for kind in KINDS for name in kind.options} - of_use):
+    for name in sorted({name for kind in KINDS for name in kind.options} & plain.keys() - of_use):
         if getattr(options, name) != plain[name]:
             of = ", ".join(kind.name.lower() for kind in KINDS if name in kind.options)
             raise DataError(

@@ -84,7 +84,7 @@ class Kind(Protocol):
     name: str
     pools: bool  # whether several runs are compared together
     of_sequence: bool | None  # compared with a sequence of events, not with one event; None: with both
-    options: tuple[str, ...]  # those of the command that count with it
+    options: tuple[str, ...]  # those of slipfront compare and fit that count with it
 
     def holds(self, names: Sequence[str]) -> bool:
         """Whether columns of these names, in small letters and without their units, are of this kind."""
@@ -139,7 +139,8 @@ class Traces:
     name = "Traces"
     pools = False
     of_sequence: bool | None = False
-    options: tuple[str, ...] = ("within_s", "shift_s", "zero_s", "low_pass_hz", "window_s", "event")
+    options: tuple[str, ...] = ("within_s", "shift_s", "zero_s", "low_pass_hz", "window_s", "event",
+                                "clock", "gain")  # fmt: skip
 
     def holds(self, names: Sequence[str]) -> bool:
         return any(name.startswith(("strain", "eps", "gamma_xy", "stress_", "sigma_")) for name in names)
@@ -317,7 +318,7 @@ class Onsets:
     name = "Onsets"
     pools = False
     of_sequence: bool | None = False
-    options: tuple[str, ...] = ("never_slipped", "event")
+    options: tuple[str, ...] = ("never_slipped", "event", "clock")
 
     def holds(self, names: Sequence[str]) -> bool:
         return any(name in OF_ONSETS for name in names)

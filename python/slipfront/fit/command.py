@@ -24,7 +24,7 @@ from slipfront.compare.command import (
     read_all,
     require_of_use,
 )
-from slipfront.compare.kinds import Cycles, Kind, Onsets, Record, Traces
+from slipfront.compare.kinds import Cycles, Kind, Record
 from slipfront.files import DataError, exists, is_folder, read_json_table
 from slipfront.fit.fitting import RUNS, Asked, Fitting, runs_of_a_step
 from slipfront.fit.mesh import finer_of
@@ -32,7 +32,6 @@ from slipfront.fit.outcome import outcome_of, write_results
 from slipfront.fit.space import Space, space_of
 from slipfront.sweep.command import once_each
 from slipfront.sweep.engine import default_workers
-from slipfront.sweep.folder import write_whole
 from slipfront.sweep.points import MOST_POINTS, value_of
 from slipfront.sweep.sweeping import How, array_script
 
@@ -74,7 +73,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-def in_command(name: str) -> str:
+def argument_words(name: str) -> str:
     """An argument as it is called on the command line."""
     return name.upper() if name in ("case", "records") else command.option(name)
 
@@ -133,15 +132,11 @@ def asked_of(options: argparse.Namespace, read: list[tuple[Kind, Record]]) -> As
     return Asked(chosen, is_fitted, options)
 
 
-def require_of_fit(options: argparse.Namespace, kinds: set[Kind]) -> None:
-    """Refuses options of the fit that count with no record that is given, and records that count twice."""
-    for one, other in combinations(options.records, 2):
+def require_different(files: Sequence[Path]) -> None:
+    """Refuses a record that would count twice."""
+    for one, other in combinations(files, 2):
         if filecmp.cmp(one, other, shallow=False):
             raise DataError(f"{other}: holds what {one} holds; leave it out")
-    if options.gain == "free" and not any(isinstance(kind, Traces) for kind in kinds):
-        raise DataError("--gain counts with traces alone, and no record is such; leave it out")
-    if options.clock == "run" and not any(isinstance(kind, Traces | Onsets) for kind in kinds):
-        raise DataError("--clock counts with traces and onsets alone, and no record is such; leave it out")
 
 
 def require_sound(options: argparse.Namespace) -> None:
@@ -168,7 +163,7 @@ def require_usable(folder: Path, arguments: Sequence[str]) -> None:
         return
     begun, wanted = (vars(of) for of in (request_of(folder), parse(arguments)))
     if other := [name for name in begun if name not in ANYHOW and str(begun[name]) != str(wanted[name])]:
-        names = " and ".join(map(in_command, other))
+        names = " and ".join(map(argument_words, other))
         raise DataError(f"{folder}: holds a fit with another {names}; choose another folder")
 
 
@@ -189,7 +184,7 @@ def restarted(given: argparse.Namespace) -> argparse.Namespace:
     changed = [name for name, value in vars(given).items() if name != "restart" and value != plain[name]]
     for name in changed:
         if name not in OF_RESTART:
-            raise DataError(f"--restart DIR goes on with the fit in DIR: leave out {in_command(name)}")
+            raise DataError(f"--restart DIR goes on with the fit in DIR: leave out {argument_words(name)}")
     options = request_of(folder)
     options.output, options.slurm = folder, None
     for name in changed:
@@ -204,11 +199,9 @@ def whole(options: argparse.Namespace, arguments: Sequence[str]) -> list[str]:
 
 
 def write_request(folder: Path, arguments: Sequence[str]) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise command.not_written(folder, error) from None
-    write_whole(folder / REQUEST, json.dumps({"arguments": arguments}, indent=2) + "\n")
+    with command.publishing_into(folder) as made:
+        text = json.dumps({"arguments": arguments}, indent=2) + "\n"
+        (made / REQUEST).write_text(text, encoding="utf-8")
 
 
 def discard_request(folder: Path) -> None:
@@ -250,9 +243,8 @@ def work(options: argparse.Namespace, arguments: Sequence[str], output: command.
     options.event = None
     read, lines = read_all(options)
     plain = vars(parse([str(options.case), *map(str, options.records)]))
-    kinds = {kind for kind, _ in read}
-    require_of_use(options, plain | {"event": None}, kinds)
-    require_of_fit(options, kinds)
+    require_of_use(options, plain, {kind for kind, _ in read})
+    require_different(options.records)
     asked = asked_of(options, read)
     lines += [f"{record.label}: {in_words(note)}" for _, record in asked.records for note in record.notes]
     workers = options.workers or default_workers()

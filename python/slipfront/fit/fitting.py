@@ -9,7 +9,7 @@ runs that are there."""
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,7 +21,7 @@ from slipfront.compare.command import in_words
 from slipfront.compare.kinds import Kind, Record
 from slipfront.compare.misfit import Observed
 from slipfront.errors import Error
-from slipfront.files import DataError, exists
+from slipfront.files import DataError
 from slipfront.fit.emulator import Emulator
 from slipfront.fit.likelihood import Part, alike_of, part_of
 from slipfront.fit.posterior import sampled
@@ -39,7 +39,7 @@ MOST_TRAINING = 300
 MARGIN = 0.5  # of the emulator's box
 MOST_NOISE = 0.5  # of log L that the runs' own noise excuses: a poor emulator takes what it misses for noise
 AGREE = 0.4  # root mean square of what is expected of log L less what runs have
-AGREED = 1.0  # the same, beyond which a fit that has no runs left is in doubt
+DOUBTFUL = 1.0  # the same, beyond which a fit that has no runs left is in doubt
 STEPS, LAST_STEPS = 300, 1500
 BEYOND = 0.02  # share of samples at the end of the emulator's box that the posterior leaves
 HEAT = 4.0  # by which log L is divided for the wider posterior
@@ -113,7 +113,7 @@ class Result:
     @property
     def agrees(self) -> bool:
         """Whether runs are as probable as was expected of them."""
-        return self.disagreement < AGREED
+        return self.disagreement < DOUBTFUL
 
     @property
     def best(self) -> Ran:
@@ -139,15 +139,12 @@ class Fitting:
         self.parts: list[Part] = []
         self.rng = np.random.default_rng(0)
         self.widths = self.summit = np.zeros(0)  # of differences in `climb`, and where it has ended
-        runs = folder / RUNS
-        known = places.read_definition(runs).points() if exists(runs / places.DEFINITION) else []
-        self.swept = {point.words: point for point in known}  # points of the folder's sweep
+        self.swept = {point.words: point for point in places.points_in(folder / RUNS)}
 
     # Runs.
 
-    def sweep(self, points: Sequence[Point]) -> Sweep:
-        vary = {key: [point.values[key] for point in points] for key in self.space.keys}
-        return Sweep(self.case, vary, self.settings, combine="zip")
+    def sweep(self, points: Iterable[Point]) -> Sweep:
+        return Sweep.of_points(self.case, points, self.settings)
 
     def add(self, shares: np.ndarray) -> None:
         """Runs points that are new, if the program accepts them, and compares them with the records."""
@@ -162,15 +159,18 @@ class Fitting:
         with closing(refused(self.sweep(points), find_program(), to_check, True)) as found:
             why_not = {point.name: told for point, told in found}
         if len(why_not) == len(points) and not self.ran:
-            told = why_not[points[0].name].removeprefix("--set ")
-            raise DataError(f"--free: all points are refused; the first, {points[0].words}: {told}")
+            reason = why_not[points[0].name].removeprefix("--set ")
+            raise DataError(f"--free: all points are refused; the first, {points[0].words}: {reason}")
         valid = {point.words: point for point in points if point.name not in why_not}
         if valid:
             if not self.ran:
                 self.require_kinds(next(iter(valid.values())))
             self.swept |= valid
-            sweep = self.sweep(list(self.swept.values()))
-            finished = carry_out(sweep, self.folder / RUNS, replace(self.how, is_checked=bool(self.ran)))
+            finished = carry_out(
+                self.sweep(self.swept.values()),
+                self.folder / RUNS,
+                replace(self.how, is_checked=bool(self.ran)),
+            )
             if finished.is_interrupted:
                 raise KeyboardInterrupt
         for point, share in fresh.values():
@@ -207,21 +207,18 @@ class Fitting:
 
     # Likelihood.
 
-    def n_mismatched(self, ran: Ran) -> int:
-        return len(self.mismatched(ran))
-
-    def mismatched(self, ran: Ran) -> list[str]:
-        """Places at which one of a fitted record and the run has a front and the other has none."""
+    def mismatched(self, ran: Ran) -> list[tuple[Observed, np.ndarray]]:
+        """Parts of fitted records, and at which places one of record and run has a front and the other has
+        none."""
         return [
-            label
+            (of, np.isfinite(of.measured) != np.isfinite(of.computed))
             for parts, is_fitted in zip(ran.observed, self.asked.is_fitted, strict=True)
             for of in parts
             if is_fitted
-            for label, differs in zip(
-                of.labels, np.isfinite(of.measured) != np.isfinite(of.computed), strict=True
-            )
-            if differs
         ]
+
+    def n_mismatched(self, ran: Ran) -> int:
+        return sum(int(differs.sum()) for _, differs in self.mismatched(ran))
 
     @property
     def usable(self) -> list[Ran]:
@@ -296,7 +293,7 @@ class Fitting:
         return sampled(lambda s: emulator.log_likelihood(s) / heat, start, steps, self.rng)
 
     def has_room(self, *runs: int) -> bool:
-        """For so many more."""
+        """Whether so many more runs are within those allowed."""
         return len(self.ran) + sum(runs) <= self.most_runs
 
     def carry_out(self, first: int, batch: int, tell: Callable[[str], None]) -> Result:
@@ -304,10 +301,10 @@ class Fitting:
         least = self.space.n + 2
         if len(self.usable) < least:
             reasons = [ran.why_not for ran in self.ran if ran.why_not]
-            told = f": {reasons[0]}" if reasons else ""
+            reason = f": {reasons[0]}" if reasons else ""
             raise DataError(
                 f"only {len(self.usable)} of {len(self.ran)} runs can be compared with the records, {least} "
-                f"are needed{told}; choose other ranges or more first runs"
+                f"are needed{reason}; choose other ranges or more first runs"
             )
         rounds, disagreement, noise = 0, np.inf, 0.0
         round_, step = runs_of_a_round(batch), runs_of_a_step(self.space.n)
@@ -334,7 +331,7 @@ class Fitting:
                     return self.result(samples, n_independent, disagreement, noise, check, rounds, ends)
             rounds += 1
             disagreement, noise = self.round(emulator, shares, logs, batch)
-            if disagreement > AGREED:
+            if disagreement > DOUBTFUL:
                 self.climb(tell)
 
     def round(
@@ -379,8 +376,9 @@ class Fitting:
         step = runs_of_a_step(self.space.n)
         for _ in range(MOST_STEPS):
             self.find_parts()
-            logs = self.of_runs(self.computed(self.usable))
-            shares = np.array([ran.share for ran in self.usable])
+            usable = self.usable
+            logs = self.of_runs(self.computed(usable))
+            shares = np.array([ran.share for ran in usable])
             near = shares[np.argsort(-logs)[: self.space.n + 2]]
             at_summit = logs[[np.array_equal(share, self.summit) for share in shares]]
             if not self.has_room(step, step) or logs.max() < at_summit.max(initial=-np.inf) + BETTER:
@@ -494,10 +492,13 @@ class Fitting:
                 f"{unlike} runs have fronts at other places of the record than the rest: "
                 "their points are ruled out"
             )
-        if usable and (places := self.mismatched(usable[0])):
-            named = ", ".join(places[:MOST_NAMED]) + (", ..." if len(places) > MOST_NAMED else "")
+        without = [
+            of.labels[k] for of, differs in self.mismatched(usable[0]) for k in np.flatnonzero(differs)
+        ]
+        if without:
+            named = ", ".join(without[:MOST_NAMED]) + (", ..." if len(without) > MOST_NAMED else "")
             told.append(
-                f"{len(places)} places of the record do not count, as no run has a front there, or all have "
+                f"{len(without)} places of the record do not count, as no run has a front there, or all have "
                 f"one where the record has none: {named}"
             )
         return told

@@ -89,17 +89,17 @@ class Part:
 def part_of(observed: Observed, name: str, place: tuple[int, int], used: np.ndarray) -> Part:
     measured, error = observed.measured[used], observed.error[used]
     has_error = bool(np.isfinite(error).all())
+    labels = [label for label, is_used in zip(observed.labels, used, strict=True) if is_used]
     if not has_error and np.isfinite(error).any():
-        label = next(of for of, is_used, e in zip(observed.labels, used, observed.error, strict=True)
-                     if is_used and not np.isfinite(e))  # fmt: skip
-        raise DataError(f"{name}: {label} has no error, and others have one: give all or none")
+        without = labels[int(np.argmin(np.isfinite(error)))]
+        raise DataError(f"{name}: {without} has no error, and others have one: give all or none")
     deviation = float(measured.std()) or float(np.abs(measured).max(initial=0.0)) or 1.0
     return Part(
         name=name,
         place=place,
         used=used,
         unit=observed.unit,
-        labels=[label for label, is_used in zip(observed.labels, used, strict=True) if is_used],
+        labels=labels,
         measured=measured,
         sigma=error if has_error else np.full(len(measured), deviation),
         has_error=has_error,

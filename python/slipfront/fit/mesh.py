@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from slipfront.files import DataError, exists, read_toml
+from slipfront.files import DataError, read_toml
 from slipfront.fit.fitting import LAST_STEPS, RUNS, Fitting, Ran, Result
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep, flattened
+from slipfront.sweep.points import made
 from slipfront.sweep.sweeping import carry_out
 
 KEY = "plate.element_size_m"
@@ -36,15 +37,13 @@ def finer_of(fitting: Fitting, result: Result) -> Finer | str:
         return f"{KEY} is free"
     if not result.agrees:
         return "runs and what was expected of them do not agree"
-    vary = {key: [value] for key, value in (best.point.values | {KEY: half_m}).items()}
     settings = {key: value for key, value in fitting.settings.items() if key != KEY}
-    (point,) = Sweep(fitting.case, vary, settings, combine="zip").points()
+    values = best.point.values | {KEY: half_m}
+    (point,) = made(values, [values.values()])
     folder = fitting.folder / FOLDER
     # With another --most another run may be the best.
-    known = places.read_definition(folder).points() if exists(folder / places.DEFINITION) else []
-    points = {one.words: one for one in (*known, point)}.values()
-    every = {key: [one.values[key] for one in points] for key in vary}
-    sweep = Sweep(fitting.case, every, settings, combine="zip")
+    points = {one.words: one for one in (*places.points_in(folder), point)}
+    sweep = Sweep.of_points(fitting.case, points.values(), settings)
     fitting.how.tell(f"mesh: the best run with {KEY} = {half_m:g}")
     try:
         if carry_out(sweep, folder, replace(fitting.how, quiet=True, is_checked=False)).is_interrupted:

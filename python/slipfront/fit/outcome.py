@@ -135,32 +135,32 @@ def pictures_of(asked: Asked, run: Opened) -> list[ShownPart]:
 
 
 def doubts_of(result: Result, keys: list[Marginal]) -> list[str]:
-    told = []
+    notes = []
     if not result.agrees:
         expected = (
             "no round has tested it"
             if np.isinf(result.disagreement)
             else f"by {result.disagreement:.1f} of log L"
         )
-        told.append(
+        notes.append(
             f"runs and what was expected of them do not agree ({expected}): allow more runs by --most"
         )
     if result.n_independent < FEW:
-        told.append(f"only {result.n_independent:.0f} independent samples: intervals are rough")
-    told += [
+        notes.append(f"only {result.n_independent:.0f} independent samples: intervals are rough")
+    notes += [
         f"the posterior of {key} goes on beyond the runs: allow more by --most" for key in result.at_ends
     ]
     for k, of in enumerate(keys):
         if end := at_an_end(result.space, result.samples, of, k):
-            told.append(f"the {end} end of its range cuts the posterior of {of.name}: widen the range")
+            notes.append(f"the {end} end of its range cuts the posterior of {of.name}: widen the range")
     check = result.check
     if check is None:
-        told.append("least squares of runs failed: a run beside the best one has no comparison")
+        notes.append("least squares of runs failed: a run beside the best one has no comparison")
     elif check.gain > BETTER:
-        told.append(
+        notes.append(
             f"least squares of runs is better by {check.gain:.1f} of log L than the place that was expected"
         )
-    return told
+    return notes
 
 
 def mesh_doubts(space: Space, samples: np.ndarray, finer: Finer | str) -> list[str]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +34,12 @@ class Sweep:
     keep: str = "all"
     #: FILE:LINE by dotted entry, of what a file says.
     lines: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
+
+    @classmethod
+    def of_points(cls, case: Path, points: Iterable[Point], settings: dict[str, Value]) -> Sweep:
+        """A sweep of these points, which have values of the same keys."""
+        rows = [point.values for point in points]
+        return cls(case, {key: [row[key] for row in rows] for key in rows[0]}, settings, combine="zip")
 
     def settings(self) -> list[str]:
         """Those of all points, as `--set` takes them."""

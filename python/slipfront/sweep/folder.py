@@ -160,6 +160,11 @@ def read_definition(folder: Path) -> Sweep:
     return Sweep(**entries | {"case": Path(entries["case"])})
 
 
+def points_in(folder: Path) -> list[Point]:
+    """Of the sweep that a folder holds; none where it holds none."""
+    return read_definition(folder).points() if exists(folder / DEFINITION) else []
+
+
 def place_of(folder: Path, point: Point) -> Path:
     return inside(folder, POINTS, point.name)
 

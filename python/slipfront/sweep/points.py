@@ -79,11 +79,11 @@ def range_of(key: str, text: str, parts: list[str] | None = None) -> Range:
         raise DataError(f"{key}={text}: the ends of the range are equal")
     if is_log and min(from_, to) <= 0:  # type: ignore[operator]
         raise DataError(f"{key}={text}: the ends of a logarithmic range are greater than 0")
-    with np.errstate(over="ignore"):
-        wide = np.divide(to, from_) if is_log else np.subtract(to, from_, dtype=float)
-    if not np.isfinite(wide) or wide == 0:
+    found = Range(float(from_), float(to), is_log)  # type: ignore[arg-type]
+    wide = found.to / found.from_ if is_log else found.to - found.from_
+    if not math.isfinite(wide) or wide == 0:
         raise DataError(f"{key}={text}: the range is too wide to be divided")
-    return Range(float(from_), float(to), is_log)  # type: ignore[arg-type]
+    return found
 
 
 def steps_of(key: str, text: str) -> list[Value]:
